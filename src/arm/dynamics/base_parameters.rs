@@ -1,9 +1,9 @@
-//! Base parameters: the combinations of the parameters that torques determine.
+//! Base parameters: the combinations of parameters that torques determine.
 //!
-//! M. Gautier, "Numerical calculation of the base inertial parameters of robots",
-//! Journal of Robotic Systems 8, 1991: a QR decomposition of the regressor at many
-//! states, W = Q R. A column without a pivot is a combination of columns before
-//! it, W₂ = W₁ K, and its parameter is grouped into theirs: π₁ + K π₂.
+//! M. Gautier, "Numerical calculation of the base inertial parameters of robots", Journal of
+//! Robotic Systems 8, 1991: QR decomposition of the stacked regressor of many states, W = Q R. A
+//! column without a pivot is a combination of previous columns, W₂ = W₁ K, and its parameter is
+//! grouped with theirs: π₁ + K π₂.
 
 use std::fmt::Write;
 
@@ -15,25 +15,25 @@ use super::motor_side::motor_rates;
 use super::parameters::{JOINT, RIGID, joint_row, parameter_count, parameter_name};
 use super::regressor::{Regressor, regressor};
 
-/// States at which the regressor is evaluated.
+/// Number of states of the stacked regressor.
 const STATES: usize = 80;
-/// Pivots below this, relative to the column's length, count as 0.
+/// Pivots below this share of the column length are 0.
 const TOLERANCE: f64 = 1e-9;
 /// Largest angle \[rad\], velocity \[rad/s\] and acceleration \[rad/s²\] of a state.
 const REACH: [f64; 3] = [3.0, 3.0, 3.0];
-/// A velocity that has a sense but no inertia \[rad/s\].
+/// A speed with a sign but without inertial torques \[rad/s\].
 const CREEP: f64 = 1e-6;
 
-/// Which parameters stand for themselves, and how the others are grouped.
+/// The independent parameters and the grouping of the others.
 #[derive(Clone, Debug)]
 pub struct BaseParameters {
     /// Number of joints.
     pub dof: usize,
-    /// Indices of the parameters that head a base parameter, ascending.
+    /// Indices of the leading parameters of the base parameters, ascending.
     pub independent: Vec<usize>,
-    /// Indices of the others, ascending.
+    /// Indices of the other parameters, ascending.
     pub dependent: Vec<usize>,
-    /// K, a row for each of `independent` and a column for each of `dependent`.
+    /// K, one row per `independent` and one column per `dependent` parameter.
     pub grouping: DMatrix<f64>,
 }
 
@@ -44,7 +44,7 @@ impl BaseParameters {
         self.independent.len()
     }
 
-    /// The base parameters of all parameters.
+    /// The base parameters from all parameters.
     #[must_use]
     pub fn of_parameters(&self, all: &[f64]) -> Vec<f64> {
         let value = |row: usize, index: &usize| {
@@ -73,9 +73,8 @@ impl BaseParameters {
     }
 }
 
-/// Writes the rows of the regressor at one state into `rows` from row `first` on:
-/// one for each joint, with a column for each parameter in the order of
-/// [`parameter_name`](super::parameter_name).
+/// Writes the regressor at one state into `rows` from row `first` on: one row per joint, one column
+/// per parameter in the order of [`parameter_name`](super::parameter_name).
 pub fn write_rows(
     model: &Model,
     scratch: &mut Regressor,
@@ -97,7 +96,7 @@ pub fn write_rows(
     for motor in 0..n {
         let values = joint_row(rates[motor], accelerations[motor]);
         for joint in 0..n {
-            // C of the motor's angle: 1 of its own joint, the coupling of axis 5.
+            // Entry of C: 1 for the own joint, the coupling for axis 5.
             let mut unit = [0.0; MAX_DOF];
             unit[joint] = 1.0;
             let share = motor_rates(model, &unit)[motor];
@@ -115,13 +114,13 @@ pub fn base_parameters(model: &Model) -> BaseParameters {
     base_parameters_among(model, &all)
 }
 
-/// The base parameters of those at the indices `among` (ascending), the others being known.
+/// The base parameters of the parameters `among` (indices, ascending) if the others are known.
 #[must_use]
 pub fn base_parameters_among(model: &Model, among: &[usize]) -> BaseParameters {
     grouped(model, among, REACH)
 }
 
-/// The base parameters of motions so slow that only weight and the sense of friction count.
+/// The base parameters of motions so slow that only gravity and the sign of friction matter.
 #[must_use]
 pub fn base_parameters_at_rest(model: &Model, among: &[usize]) -> BaseParameters {
     grouped(model, among, [REACH[0], CREEP, 0.0])
@@ -139,8 +138,7 @@ fn grouped(model: &Model, among: &[usize], reach: [f64; 3]) -> BaseParameters {
         write_rows(model, &mut scratch, [&q, &qd, &qdd], &mut stacked, state * n);
     }
     let mut stacked = stacked.select_columns(among);
-    // Columns of one length each, so that units do not matter; a column of rounding
-    // errors stays one.
+    // Scale columns to equal length, independent of units; columns of rounding errors stay small.
     let mut lengths: Vec<f64> = stacked.column_iter().map(|column| column.norm()).collect();
     let longest = lengths.iter().fold(f64::MIN_POSITIVE, |m, length| m.max(*length));
     for (mut column, length) in stacked.column_iter_mut().zip(&mut lengths) {
@@ -156,8 +154,8 @@ fn grouped(model: &Model, among: &[usize], reach: [f64; 3]) -> BaseParameters {
     base
 }
 
-/// Householder reflections from left to right; a column with nothing left below
-/// the pivots found so far gets none.
+/// Householder reflections from left to right; a column without a remainder below the previous
+/// pivots has none.
 fn group(mut w: DMatrix<f64>, lengths: &[f64], dof: usize) -> BaseParameters {
     let (mut independent, mut dependent) = (Vec::new(), Vec::new());
     for column in 0..w.ncols() {
@@ -177,7 +175,7 @@ fn group(mut w: DMatrix<f64>, lengths: &[f64], dof: usize) -> BaseParameters {
         }
     }
     let rank = independent.len();
-    // R₁ K = R₂ from the last row on, then without the scaling.
+    // Solve R₁ K = R₂ backwards, then undo the scaling.
     let mut grouping = DMatrix::zeros(rank, dependent.len());
     for (k, from) in dependent.iter().enumerate() {
         for row in (0..rank).rev() {
@@ -197,8 +195,8 @@ fn group(mut w: DMatrix<f64>, lengths: &[f64], dof: usize) -> BaseParameters {
     BaseParameters { dof, independent, dependent, grouping }
 }
 
-/// A number in (−1, 1) that fills the interval evenly over `index`, another way
-/// for each `channel`: multiples of roots of primes, without their whole parts.
+/// A number in (−1, 1), evenly distributed over `index` and independent per `channel`: the
+/// fractional parts of multiples of square roots of primes.
 fn spread(index: usize, channel: usize) -> f64 {
     const PRIMES: [f64; 3 * MAX_DOF] = [
         2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0, 29.0, 31.0, 37.0, 41.0, 43.0, 47.0, 53.0,

@@ -1,8 +1,7 @@
 //! Mass matrix by the composite rigid body algorithm.
 //!
-//! R. Featherstone, "Rigid Body Dynamics Algorithms", 2008, chapter 6, written in
-//! the base frame: `M_ik = S_i · Y_k S_k` for i ≤ k, with `Y_k` the inertia of all
-//! bodies from k on.
+//! R. Featherstone, "Rigid Body Dynamics Algorithms", 2008, chapter 6, in the base frame:
+//! `M_ik = S_i · Y_k S_k` for i ≤ k, with `Y_k` the inertia of all bodies from k on.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -14,8 +13,8 @@ use super::load::Load;
 use super::motor_side::add_rotors;
 use super::spatial::{Inertia, Motion};
 
-/// M(q) \[kg m²\] at `q` \[rad\] with `load` at the flange, rotors included. Zero
-/// where the robot has no dynamics.
+/// M(q) \[kg m²\] at `q` \[rad\] with `load` at the flange, including rotors. Zero if the robot has
+/// no dynamics.
 pub fn crba(model: &Model, data: &mut Data, load: &Load, q: &[f64]) -> JointMatrix {
     let mut mass = JointMatrix::zeros();
     let Some(loaded) = load.on(model) else { return mass };

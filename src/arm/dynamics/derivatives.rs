@@ -1,19 +1,17 @@
 //! Analytic derivatives of the inverse dynamics.
 //!
-//! J. Carpentier, N. Mansard, "Analytical Derivatives of Rigid Body Dynamics
-//! Algorithms", Robotics: Science and Systems 2018. Everything is written in the
-//! base frame, where turning joint k turns all that follows as one body:
+//! J. Carpentier, N. Mansard, "Analytical Derivatives of Rigid Body Dynamics Algorithms", Robotics:
+//! Science and Systems 2018, in the base frame, where joint k moves all later bodies as one:
 //!
 //! ```text
 //! ∂f_j/∂q_k = S_k ×* f_j + Y_j dA_k + B_j dV_k      dV_k = v_p × S_k
 //! ∂f_j/∂q̇_k = 2 Y_j dV_k + B_j S_k                  dA_k = a_p × S_k + v_p × dV_k
 //! ```
 //!
-//! for bodies j ≥ k, with p the parent of k. Of a rigid body, B x depends on the
-//! angular part α of x alone: its moment is D α and its force 2 α × h, where h is
-//! the linear momentum, D = −2 (\[ω\] Σ + \[m c\] \[v\]), and Σ = ½ tr(I) − I the
-//! second moments of mass about the origin. So B of several bodies is a sum of
-//! matrices of three by three.
+//! for bodies j ≥ k, with p the parent of k. For a rigid body, B x depends only on the angular part
+//! α of x: its moment is D α and its force 2 α × h, where h is the linear momentum,
+//! D = −2 (\[ω\] Σ + \[m c\] \[v\]), and Σ = ½ tr(I) − I the second moments of mass about the
+//! origin. So B of several bodies is a sum of 3 × 3 matrices.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -28,7 +26,7 @@ use super::spatial::{Force, Inertia, Motion};
 /// Inverse dynamics with its derivatives; rows are torques.
 #[derive(Clone, Debug)]
 pub struct Derivatives {
-    /// Torque of each joint \[Nm\], as [`rnea`](super::rnea) gives it.
+    /// Torque of each joint \[Nm\], as from [`rnea`](super::rnea).
     pub tau: [f64; MAX_DOF],
     /// ∂τ/∂q \[Nm/rad\].
     pub dq: JointMatrix,
@@ -38,10 +36,9 @@ pub struct Derivatives {
     pub mass: JointMatrix,
 }
 
-/// Torques and their derivatives for the motion `q` \[rad\], `qd` \[rad/s\], `qdd`
-/// \[rad/s²\] with `load` at the flange: rigid bodies and reflected rotors, no
-/// friction. The inputs have one entry for each joint (a missing one is 0).
-/// All zero where the robot has no dynamics.
+/// Torques and their derivatives for the motion `q` \[rad\], `qd` \[rad/s\], `qdd` \[rad/s²\] with
+/// `load` at the flange: rigid bodies and reflected rotors, no friction. The inputs have one entry
+/// per joint (missing ones are 0). All zero if the robot has no dynamics.
 pub fn rnea_derivatives(
     model: &Model,
     data: &mut Data,

@@ -1,5 +1,5 @@
-//! Kinetic and potential energy, summed body by body in the base frame: independent of the inverse
-//! dynamics, which tests check against them.
+//! Kinetic and potential energy, summed over the bodies in the base frame; independent of the
+//! inverse dynamics, which tests compare with them.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -8,8 +8,8 @@ use crate::arm::robot::{GRAVITY, Link, MAX_DOF, Model};
 use super::load::Load;
 use super::motor_side::motor_rates;
 
-/// Kinetic energy of links, load and rotors \[J\] at `q` \[rad\], `qd` \[rad/s\];
-/// 0 where the robot has no dynamics.
+/// Kinetic energy of links, load and rotors \[J\] at `q` \[rad\], `qd` \[rad/s\]; 0 if the robot
+/// has no dynamics.
 #[must_use]
 pub fn kinetic_energy(model: &Model, load: &Load, q: &[f64], qd: &[f64]) -> f64 {
     let mut energy = 0.0;
@@ -26,8 +26,8 @@ pub fn kinetic_energy(model: &Model, load: &Load, q: &[f64], qd: &[f64]) -> f64 
     energy
 }
 
-/// Potential energy of links and load \[J\] at `q` \[rad\], 0 where every centre of
-/// mass lies at the height of the base frame; 0 where the robot has no dynamics.
+/// Potential energy of links and load \[J\] at `q` \[rad\] relative to the height of the base
+/// frame; 0 if the robot has no dynamics.
 #[must_use]
 pub fn potential_energy(model: &Model, load: &Load, q: &[f64]) -> f64 {
     let up = model.kinematics.up();
@@ -38,7 +38,7 @@ pub fn potential_energy(model: &Model, load: &Load, q: &[f64]) -> f64 {
     energy
 }
 
-/// A moving body, in the base frame.
+/// A moving body in the base frame.
 struct Body<'a> {
     link: &'a Link,
     rotation: Matrix3<f64>,

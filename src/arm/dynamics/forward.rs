@@ -7,9 +7,9 @@ use super::data::Data;
 use super::load::Load;
 use super::rnea::rnea;
 
-/// Acceleration of each joint \[rad/s²\] under the torques `tau` \[Nm\] (friction
-/// taken off) at `q` \[rad\], `qd` \[rad/s\]. `None` where the mass matrix is not
-/// positive definite, as of a robot without dynamics.
+/// Acceleration of each joint \[rad/s²\] under the torques `tau` \[Nm\] (without friction) at `q`
+/// \[rad\], `qd` \[rad/s\]. `None` if the mass matrix is not positive definite, as for a robot
+/// without dynamics.
 pub fn forward_dynamics(
     model: &Model,
     data: &mut Data,
@@ -22,7 +22,7 @@ pub fn forward_dynamics(
     let mut lower = crba(model, data, load, q);
     let mut x = [0.0; MAX_DOF];
     let n = model.dof;
-    // M = L Lᵀ by Cholesky, and L y = τ − b on the way.
+    // M = L Lᵀ by Cholesky, together with L y = τ − b.
     for i in 0..n {
         for j in 0..=i {
             let mut sum = lower[(i, j)];

@@ -4,26 +4,24 @@
 //! τ_f = f_C s + f_v q̇ + f_s exp(−(q̇/v_s)²) s + f_a |q̇| + f_d s² + μ |τ_L| s
 //! ```
 //!
-//! with s the sign of the velocity: Coulomb, viscous, Stribeck (B.
-//! Armstrong-Hélouvry, P. Dupont, C. Canudas de Wit, "A Survey of Models, Analysis
-//! Tools and Compensation Methods for the Control of Machines with Friction",
-//! Automatica 30, 1994), the difference of the directions, and the part that grows
-//! with the load `τ_L` on the gear. Velocities and torques are those of the motors,
-//! which differ from the joints' only where a wrist is coupled.
+//! with s the sign of the velocity: Coulomb, viscous, Stribeck (B. Armstrong-Hélouvry, P. Dupont,
+//! C. Canudas de Wit, "A Survey of Models, Analysis Tools and Compensation Methods for the Control
+//! of Machines with Friction", Automatica 30, 1994), differences between directions, and a part
+//! that grows with the gear torque `τ_L`. Velocities and torques are those of the motors, which
+//! differ from those of the joints only in a coupled wrist.
 
 use crate::arm::robot::{MAX_DOF, Model};
 
 use super::motor_side::{joint_torques, motor_rates, motor_torques};
 
-/// Torque of each joint against its friction \[Nm\] at the velocities `qd`
-/// \[rad/s\], with `load_torque` \[Nm\] through the gears. Exact: s = sign(q̇), and
-/// sign(0) = 0.
+/// Friction torque of each joint \[Nm\] at the velocities `qd` \[rad/s\], with `load_torque` \[Nm\]
+/// through the gears. Exact: s = sign(q̇) with sign(0) = 0.
 #[must_use]
 pub fn friction(model: &Model, qd: &[f64], load_torque: &[f64; MAX_DOF]) -> [f64; MAX_DOF] {
     law(model, qd, load_torque, |_, velocity| sense(velocity))
 }
 
-/// The same with given senses of the motors: 0 for one that counts as at rest.
+/// The same with given signs of the motor speeds, 0 for a motor at rest.
 #[must_use]
 pub fn friction_of_senses(
     model: &Model,

@@ -4,12 +4,10 @@ use nalgebra::SMatrix;
 
 use crate::arm::robot::{Coupling, MAX_DOF, Model};
 
-/// A matrix with a row and a column for each joint; those beyond the robot's
-/// joints are 0.
+/// A matrix with one row and column per joint; entries beyond the joints of the robot are 0.
 pub type JointMatrix = SMatrix<f64, MAX_DOF, MAX_DOF>;
 
-/// The matrix at the reported joints of one at the serial ones, Tᵀ A T with
-/// `q_serial = T q`.
+/// The matrix at the reported joints from that at the serial ones, Tᵀ A T with `q_serial = T q`.
 pub(super) fn from_serial(model: &Model, mut matrix: JointMatrix) -> JointMatrix {
     if model.kinematics.coupling == Coupling::Parallelogram {
         for row in 0..model.dof {

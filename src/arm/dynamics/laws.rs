@@ -1,12 +1,12 @@
-//! Torques of the laws that effects add to a model.
+//! Torques of the effect laws of a model.
 
 use crate::arm::robot::{LawState, MAX_DOF, Model};
 
 use super::motor_side::{joint_torques, motor_rates, motor_torques};
 
-/// Torques \[Nm\] of the laws of a model between its links, and of those of friction, at
-/// the time `t` \[s\] since the robot began to move. `gear` is what the gears carry at the
-/// joints \[Nm\], `senses` are those of the motors.
+/// Torques \[Nm\] of the laws between the links and of the friction laws of a model, at the time
+/// `t` \[s\] since the start of the motion. `gear` are the gear torques at the joints \[Nm\],
+/// `senses` the signs of the motor speeds.
 #[must_use]
 pub fn laws(
     model: &Model,

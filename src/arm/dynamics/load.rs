@@ -1,4 +1,4 @@
-//! What the flange carries.
+//! Load at the flange.
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
 
@@ -11,12 +11,12 @@ pub struct Load {
     pub mass: f64,
     /// Centre of mass \[m\].
     pub com: Vector3<f64>,
-    /// Inertia about the centre of mass, axes of tool0 \[kg m²\].
+    /// Inertia about the centre of mass in the tool0 axes \[kg m²\].
     pub inertia: Matrix3<f64>,
 }
 
 impl Load {
-    /// Nothing at the flange.
+    /// No load.
     #[must_use]
     pub fn none() -> Load {
         Load { mass: 0.0, com: Vector3::zeros(), inertia: Matrix3::zeros() }
@@ -30,8 +30,8 @@ impl Load {
         Load { mass: merged.mass, com: merged.com, inertia: merged.inertia }
     }
 
-    /// The last link of the robot with this load fixed to it, in that link's
-    /// frame; `None` where the robot has no dynamics.
+    /// The last link of the robot with this load, in the link frame; `None` if the robot has no
+    /// dynamics.
     pub(super) fn on(&self, model: &Model) -> Option<Link> {
         let last = model.links.last()?;
         if self.mass == 0.0 && self.inertia == Matrix3::zeros() {
@@ -50,7 +50,7 @@ impl Load {
     }
 }
 
-/// Two rigid bodies in one frame, as one.
+/// Two rigid bodies of one frame as one body.
 fn merge(a: &Link, b: &Link) -> Link {
     let mass = a.mass + b.mass;
     if mass <= 0.0 {

@@ -1,9 +1,8 @@
-//! Inverse dynamics with its derivatives and regressor, mass matrix, forward dynamics, friction, energies.
+//! Inverse dynamics, its derivatives and regressor, mass matrix, forward dynamics, friction, energy.
 //!
-//! Algorithms read a [`Model`](crate::arm::robot::Model), write into a scratch
-//! [`Data`] and return values; none allocates. Results have [`MAX_DOF`]
-//! entries, those beyond the robot's joints are 0. Gravity is 9.81 m/s² against
-//! z of the base frame.
+//! Algorithms read a [`Model`](crate::arm::robot::Model), use a scratch [`Data`] and return values
+//! without allocation. Results have [`MAX_DOF`] entries; those beyond the joints are 0. Gravity is
+//! 9.81 m/s² along −z of the world frame.
 //!
 //! [`MAX_DOF`]: crate::arm::robot::MAX_DOF
 

@@ -1,8 +1,7 @@
-//! Rotors and friction, which turn with the motors.
+//! Rotors and friction at the motor side.
 //!
-//! Where the gears of a wrist are coupled, motor 6 turns with axis 5 as well:
-//! with φ = C q the motor angles (divided by the gear ratios) of the joint
-//! angles q, torques map as `τ = Cᵀ τ_m`.
+//! With coupled wrist gears motor 6 also turns with axis 5: with φ = C q the motor angles over the
+//! gear ratios, torques map as `τ = Cᵀ τ_m`.
 
 use crate::arm::robot::{MAX_DOF, Model};
 
@@ -11,8 +10,7 @@ use super::joint_matrix::JointMatrix;
 /// Joints 5 and 6, from 0.
 const WRIST: [usize; 2] = [4, 5];
 
-/// C x: velocities or accelerations of the motors, divided by the gear ratios, of
-/// those of the joints.
+/// C x: motor velocities or accelerations over the gear ratios, from those of the joints.
 #[must_use]
 pub fn motor_rates(model: &Model, joint_rates: &[f64]) -> [f64; MAX_DOF] {
     let mut rates = [0.0; MAX_DOF];
@@ -23,20 +21,20 @@ pub fn motor_rates(model: &Model, joint_rates: &[f64]) -> [f64; MAX_DOF] {
     rates
 }
 
-/// C⁻ᵀ τ: torques of the motors times the gear ratios, of those at the joints.
+/// C⁻ᵀ τ: motor torques times the gear ratios, from joint torques.
 #[must_use]
 pub fn motor_torques(model: &Model, mut tau: [f64; MAX_DOF]) -> [f64; MAX_DOF] {
     tau[WRIST[0]] -= model.wrist.coupling * tau[WRIST[1]];
     tau
 }
 
-/// Cᵀ τ: torques at the joints of those of the motors.
+/// Cᵀ τ: joint torques from motor torques.
 pub(super) fn joint_torques(model: &Model, mut tau: [f64; MAX_DOF]) -> [f64; MAX_DOF] {
     tau[WRIST[0]] += model.wrist.coupling * tau[WRIST[1]];
     tau
 }
 
-/// Torques that accelerate the rotors by `qdd`; 0 where the robot has no dynamics.
+/// Torques that accelerate the rotors by `qdd`; 0 if the robot has no dynamics.
 pub(super) fn rotor_torques(model: &Model, qdd: &[f64]) -> [f64; MAX_DOF] {
     let Some(motors) = model.motors.as_ref().filter(|_| model.has_dynamics()) else {
         return [0.0; MAX_DOF];
@@ -48,7 +46,7 @@ pub(super) fn rotor_torques(model: &Model, qdd: &[f64]) -> [f64; MAX_DOF] {
     joint_torques(model, tau)
 }
 
-/// Apparent torques that a log adds in proportion to accelerations and rates of the motors \[Nm\].
+/// Apparent torques of a log in proportion to motor accelerations and speeds \[Nm\].
 #[must_use]
 pub fn apparent_torques(model: &Model, qd: &[f64], qdd: &[f64]) -> [f64; MAX_DOF] {
     let sensors = &model.sensors;
@@ -61,7 +59,7 @@ pub fn apparent_torques(model: &Model, qd: &[f64], qdd: &[f64]) -> [f64; MAX_DOF
     joint_torques(model, tau)
 }
 
-/// Adds the inertia of the rotors, Cᵀ diag(n² `J_m`) C.
+/// Adds the rotor inertia Cᵀ diag(n² `J_m`) C.
 pub(super) fn add_rotors(model: &Model, matrix: &mut JointMatrix) {
     let Some(motors) = model.motors.as_ref().filter(|_| model.has_dynamics()) else { return };
     for joint in 0..model.dof {

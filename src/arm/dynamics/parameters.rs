@@ -7,25 +7,24 @@ use crate::arm::robot::{Link, Model};
 use super::friction::sense;
 use super::load::Load;
 
-/// Parameters of a rigid body.
+/// Number of parameters of a rigid body.
 pub const RIGID: usize = 10;
-/// Parameters of a joint: rotor inertia, viscous and Coulomb friction, offset.
+/// Number of parameters of a joint: rotor inertia, viscous and Coulomb friction, offset.
 pub const JOINT: usize = 4;
 
-/// Names of the parameters of a link, in order: mass \[kg\], first moments \[kg m\],
-/// moments about the joint's origin \[kg m²\].
+/// Names of the parameters of a link, in order: mass \[kg\], first moments \[kg m\], moments about
+/// the joint origin \[kg m²\].
 const RIGID_NAMES: [&str; RIGID] = ["m", "mx", "my", "mz", "xx", "yy", "zz", "xy", "xz", "yz"];
 /// Names of the parameters of a joint, in order: \[kg m²\], \[Nm s/rad\], \[Nm\], \[Nm\].
 const JOINT_NAMES: [&str; JOINT] = ["ia", "fv", "fc", "offset"];
 
-/// Number of parameters of a robot of `dof` joints: those of the rigid bodies link by link, then
-/// those of the joints.
+/// Number of parameters of a robot with `dof` joints: those of the links, then those of the joints.
 #[must_use]
 pub fn parameter_count(dof: usize) -> usize {
     (RIGID + JOINT) * dof
 }
 
-/// Name of the parameter `index` of a robot of `dof` joints, such as `xx3` or `fc6`.
+/// Name of the parameter `index` of a robot with `dof` joints, such as `xx3` or `fc6`.
 #[must_use]
 pub fn parameter_name(dof: usize, index: usize) -> String {
     let rigid = RIGID * dof;
@@ -55,8 +54,8 @@ pub fn link_parameters(link: &Link) -> [f64; RIGID] {
     ]
 }
 
-/// All parameters of a robot with `load` at its flange, in the order of
-/// [`parameter_name`]; empty where it has no dynamics. Offsets are 0.
+/// All parameters of a robot with `load` at its flange, in the order of [`parameter_name`]; empty
+/// if it has no dynamics. Offsets are 0.
 #[must_use]
 pub fn parameters(model: &Model, load: &Load) -> Vec<f64> {
     let Some(loaded) = load.on(model) else { return Vec::new() };
@@ -69,7 +68,7 @@ pub fn parameters(model: &Model, load: &Load) -> Vec<f64> {
     values
 }
 
-/// Factors of a joint's parameters in its torque at the rate `qd` and acceleration `qdd` of the motor.
+/// Regressor entries of the joint parameters at the motor speed `qd` and acceleration `qdd`.
 pub(super) fn joint_row(qd: f64, qdd: f64) -> [f64; JOINT] {
     [qdd, qd, sense(qd), 1.0]
 }

@@ -1,5 +1,5 @@
-//! The pseudo-inertia of a rigid body: it adds up over bodies, and is positive definite for a
-//! physically consistent body.
+//! The pseudo-inertia of a rigid body: additive over bodies, and positive definite for a physically
+//! consistent body.
 //!
 //! ```text
 //! P = ⎡ Σ   h ⎤    Σ = ∫ r rᵀ dm = ½ tr(I) 1 − I,  h = m c
@@ -7,15 +7,15 @@
 //! ```
 //!
 //! (P. Wensing, S. Kim, J.-J. Slotine, "Linear matrix inequalities for physically consistent
-//! inertial parameter identification", RA-L 3, 2018). With its frame it moves as T P Tᵀ.
+//! inertial parameter identification", RA-L 3, 2018). It transforms as T P Tᵀ.
 
 use nalgebra::{Matrix3, Matrix4, Vector3};
 
 use super::parameters::RIGID;
 use crate::arm::robot::Link;
 
-/// P of a body's ten parameters in the order of [`link_parameters`](super::link_parameters), about
-/// the origin of its frame; what a short list lacks is 0.
+/// P from the ten parameters of a body in the order of [`link_parameters`](super::link_parameters),
+/// about the frame origin; missing parameters are 0.
 #[must_use]
 pub fn pseudo_inertia(parameters: &[f64]) -> Matrix4<f64> {
     let [m, hx, hy, hz, ..] = ten(parameters);
@@ -48,8 +48,8 @@ pub fn body_parameters(p: &Matrix4<f64>) -> [f64; RIGID] {
     ]
 }
 
-/// The link of ten parameters, the inverse of [`link_parameters`](super::link_parameters). Without
-/// mass its centre is the origin.
+/// The link with these parameters, the inverse of [`link_parameters`](super::link_parameters).
+/// Without mass its centre of mass is the origin.
 #[must_use]
 pub fn link_of(parameters: &[f64]) -> Link {
     let [m, hx, hy, hz, ..] = ten(parameters);

@@ -1,9 +1,8 @@
 //! The regressor: τ = Y(q, q̇, q̈) π is linear in the inertial parameters.
 //!
-//! Gautier and Khalil's linear form: of each link the mass, the first moments m c
-//! and the moments of inertia about the joint's origin. Body j's wrench, linear
-//! in its ten parameters, is laid onto the axis of each joint before it, which is
-//! carried along in body j's frame.
+//! Linear form of Gautier and Khalil: per link the mass, the first moments m c and the moments of
+//! inertia about the joint origin. The wrench of body j, linear in its ten parameters, is projected
+//! onto the axes of all previous joints, which are transformed into the frame of body j.
 
 use nalgebra::Vector3;
 
@@ -11,11 +10,10 @@ use crate::arm::robot::{Coupling, GRAVITY, MAX_DOF, Model};
 
 use super::parameters::RIGID;
 
-/// One row of ten numbers for each joint and link.
+/// One row of ten numbers per joint and link.
 #[derive(Clone, Debug)]
 pub struct Regressor {
-    /// `rows[joint][link]`: torque of the joint \[Nm\] per unit of each of the
-    /// link's parameters, in the order of
+    /// `rows[joint][link]`: joint torque \[Nm\] per unit of each link parameter, in the order of
     /// [`link_parameters`](super::link_parameters).
     pub rows: [[[f64; RIGID]; MAX_DOF]; MAX_DOF],
 }
@@ -34,16 +32,16 @@ impl Default for Regressor {
     }
 }
 
-/// Writes the regressor of the motion `q` \[rad\], `qd` \[rad/s\], `qdd` \[rad/s²\] of
-/// the rigid bodies; the inputs have one entry for each joint (a missing one is 0).
+/// Writes the regressor of the rigid bodies for the motion `q` \[rad\], `qd` \[rad/s\], `qdd`
+/// \[rad/s²\]; the inputs have one entry per joint (missing ones are 0).
 pub fn regressor(model: &Model, out: &mut Regressor, q: &[f64], qd: &[f64], qdd: &[f64]) {
     let geometry = &model.kinematics;
     let [q, qd, qdd] = [q, qd, qdd].map(|values| geometry.to_serial(values));
     let mut w = Vector3::zeros();
     let mut wd = Vector3::zeros();
     let mut a = model.kinematics.up() * GRAVITY;
-    // The axis of each joint up to this one: direction, and velocity that turning
-    // about it gives to the origin of this body's frame.
+    // The axes of all joints up to this one: direction, and velocity of the frame origin of this
+    // body per unit rotation.
     let mut axes = [(Vector3::zeros(), Vector3::zeros()); MAX_DOF];
     for (j, joint) in geometry.joints.iter().take(MAX_DOF).enumerate() {
         let r = joint.rotation_at(q[j]);
@@ -70,7 +68,7 @@ pub fn regressor(model: &Model, out: &mut Regressor, q: &[f64], qd: &[f64], qdd:
     }
 }
 
-/// z · moment + s · force of a body with each parameter being 1.
+/// z · moment + s · force of a body for each unit parameter.
 #[inline]
 fn row(
     z: &Vector3<f64>,

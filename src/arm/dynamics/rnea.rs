@@ -1,7 +1,7 @@
 //! Inverse dynamics by the recursive Newton-Euler algorithm.
 //!
-//! R. Featherstone, "Rigid Body Dynamics Algorithms", 2008, chapter 5, written
-//! out in vectors of three, each body in its own joint's frame.
+//! R. Featherstone, "Rigid Body Dynamics Algorithms", 2008, chapter 5, in 3-vectors, each body in
+//! its joint frame.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -11,10 +11,9 @@ use super::data::Data;
 use super::load::Load;
 use super::motor_side::rotor_torques;
 
-/// Torque of each joint \[Nm\] for the motion `q` \[rad\], `qd` \[rad/s\], `qdd`
-/// \[rad/s²\] with `load` at the flange: rigid bodies and reflected rotors, no
-/// friction. The inputs have one entry for each joint (a missing one is 0).
-/// All zero where the robot has no dynamics.
+/// Torque of each joint \[Nm\] for the motion `q` \[rad\], `qd` \[rad/s\], `qdd` \[rad/s²\] with
+/// `load` at the flange: rigid bodies and reflected rotors, no friction. The inputs have one entry
+/// per joint (missing ones are 0). All zero if the robot has no dynamics.
 pub fn rnea(
     model: &Model,
     data: &mut Data,
@@ -30,7 +29,7 @@ pub fn rnea(
     tau
 }
 
-/// The same without the rotors: the torque through the gears.
+/// The same without rotors: the torque through the gears.
 pub fn rigid_bodies(
     model: &Model,
     data: &mut Data,
@@ -61,7 +60,7 @@ pub(super) fn rigid_bodies_each<const N: usize>(
     newton_euler(model, rotations.each_ref(), &loaded, motions)
 }
 
-/// [`rnea`] of several motions \[q̇, q̈\] from the position with these rotations of the joints.
+/// [`rnea`] of several motions \[q̇, q̈\] at one position, given by the joint rotations.
 pub fn rnea_each<const N: usize>(
     model: &Model,
     load: &Load,
@@ -78,7 +77,7 @@ pub fn rnea_each<const N: usize>(
     torques
 }
 
-/// Torque of each joint \[Nm\] that holds the robot still at `q` \[rad\].
+/// Holding torque of each joint at `q` \[rad\] \[Nm\].
 pub fn gravity(model: &Model, data: &mut Data, load: &Load, q: &[f64]) -> [f64; MAX_DOF] {
     rnea(model, data, load, q, &[], &[])
 }
@@ -88,8 +87,8 @@ fn links(model: &Model) -> usize {
     model.links.len().min(model.kinematics.joints.len()).min(MAX_DOF)
 }
 
-/// The torques of motions \[q̇, q̈\] at positions with these rotations, `loaded` being the last
-/// link. Link by link for all motions: no step of one waits for a step of another.
+/// The torques of motions \[q̇, q̈\] at positions with these rotations; `loaded` is the last link.
+/// All motions of a link are computed together for instruction-level parallelism.
 fn newton_euler<const N: usize>(
     model: &Model,
     rotations: [&Rotations; N],
@@ -104,8 +103,8 @@ fn newton_euler<const N: usize>(
     let joints = &geometry.joints;
     let last = links(model) - 1;
 
-    // Motion of the parent: angular velocity and acceleration, and acceleration
-    // of its origin; gravity enters as an acceleration of the base.
+    // Angular velocity and acceleration of the parent, and acceleration of its origin; gravity is
+    // an acceleration of the base.
     let mut w = [Vector3::zeros(); N];
     let mut wd = [Vector3::zeros(); N];
     let mut a = [model.kinematics.up() * GRAVITY; N];
@@ -121,7 +120,7 @@ fn newton_euler<const N: usize>(
         for k in 0..N {
             let r = &rotations[k][i];
             let [qd, qdd] = [rates[k][0][i], rates[k][1][i]];
-            // Without speeds much of the sums is zero, without accelerations too nearly all.
+            // Without velocities many terms are zero, without accelerations nearly all.
             let [moves, starts] = motions[k].map(|list| !list.is_empty());
             let (force, moment);
             if moves {

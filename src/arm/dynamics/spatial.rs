@@ -1,5 +1,4 @@
-//! Spatial vectors, all in the base frame and about its origin, so that those of
-//! different bodies add up.
+//! Spatial vectors, all in the base frame about its origin, so that they are additive over bodies.
 //!
 //! R. Featherstone, "Rigid Body Dynamics Algorithms", 2008, chapter 2.
 
@@ -7,7 +6,7 @@ use std::ops::{Add, AddAssign, Mul};
 
 use nalgebra::{Matrix3, Vector3};
 
-/// Velocity or acceleration of the body-fixed point that passes the origin.
+/// Velocity or acceleration; the linear part is that of the body-fixed point at the origin.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motion {
     pub(super) angular: Vector3<f64>,
@@ -21,7 +20,7 @@ pub(super) struct Force {
     pub(super) force: Vector3<f64>,
 }
 
-/// Inertia of a body or of several that move as one.
+/// Inertia of one body or of several rigidly connected ones.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Inertia {
     pub(super) mass: f64,
@@ -106,8 +105,7 @@ impl Inertia {
         Inertia { mass: 0.0, first: Vector3::zeros(), about_origin: Matrix3::zeros() }
     }
 
-    /// A body of inertia `about_com` (axes of the base) with its centre of mass
-    /// at `com`.
+    /// A body of inertia `about_com` (base frame axes) with its centre of mass at `com`.
     #[inline]
     pub(super) fn of_body(mass: f64, com: &Vector3<f64>, about_com: &Matrix3<f64>) -> Inertia {
         let first = com * mass;

@@ -1,4 +1,4 @@
-//! Torques of the motors: rigid bodies, rotors and friction.
+//! Joint torques: rigid bodies, rotors and friction.
 
 use crate::arm::robot::{MAX_DOF, Model};
 
@@ -12,15 +12,14 @@ use super::rnea::{rigid_bodies, rigid_bodies_each};
 /// Torques at the joints \[Nm\].
 #[derive(Clone, Copy, Debug)]
 pub struct Torque {
-    /// Of the rigid bodies and the rotors, as [`rnea`](super::rnea) gives it, and of what else
-    /// is between the links.
+    /// Rigid bodies and rotors, as from [`rnea`](super::rnea), and laws between the links.
     pub rigid: [f64; MAX_DOF],
-    /// Of friction, with exact signs.
+    /// Friction with exact signs.
     pub friction: [f64; MAX_DOF],
 }
 
-/// The torques of the motion `q` \[rad\], `qd` \[rad/s\], `qdd` \[rad/s²\] with `load`
-/// at the flange. All zero but friction where the robot has no dynamics.
+/// The torques of the motion `q` \[rad\], `qd` \[rad/s\], `qdd` \[rad/s²\] with `load` at the
+/// flange. All zero except friction if the robot has no dynamics.
 pub fn torque(
     model: &Model,
     data: &mut Data,
@@ -32,7 +31,7 @@ pub fn torque(
     through_gears(model, [q, qd, qdd], rigid_bodies(model, data, load, q, qd, qdd))
 }
 
-/// [`torque`] in several states \[q, q̇, q̈\]: takes less than one after the other.
+/// [`torque`] in several states \[q, q̇, q̈\], faster than one by one.
 #[inline]
 pub fn torque_each<const N: usize>(
     model: &Model,
@@ -43,7 +42,7 @@ pub fn torque_each<const N: usize>(
     std::array::from_fn(|k| through_gears(model, states[k], rigid[k]))
 }
 
-/// With the torques `rigid` of the rigid bodies.
+/// The torques from the rigid-body torques `rigid`.
 fn through_gears(model: &Model, [q, qd, qdd]: [&[f64]; 3], mut rigid: [f64; MAX_DOF]) -> Torque {
     let mut friction = friction(model, qd, &rigid);
     if !model.laws.is_empty() {

@@ -2,7 +2,6 @@
 
 use super::effect::{Channel, Effect, Form, Scope, bounded};
 
-/// Acceleration that is higher or lower.
 pub(super) const ACCELERATION_LIMIT: Effect = Effect {
     id: "acceleration_limit",
     channel: Channel::Motion,

@@ -1,10 +1,9 @@
-//! What only a log shows in proportion to acceleration and rate: below zero, which no rotor and no friction has.
+//! Apparent torque of a log in proportion to acceleration and speed, which may be negative.
 
 use crate::arm::robot::Model;
 
 use super::effect::{Channel, Effect, Form, Scope, every, free, linear};
 
-/// Apparent torque.
 pub(super) const APPARENT_TORQUE: Effect = Effect {
     id: "apparent_torque",
     channel: Channel::Torque,

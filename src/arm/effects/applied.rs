@@ -7,26 +7,26 @@ use super::effect::{Effect, Form, Parameter, Scope, padded};
 use super::motion::Motion;
 use super::register::{ALL, find};
 
-/// The robot in a file or of the catalogue, with its effects.
+/// The robot of a file or of the catalogue with its effects.
 ///
 /// # Errors
-/// As of [`robot::load`]; an effect is not known or leads to what no robot has.
+/// As for [`robot::load`]; an effect is unknown or its result is impossible.
 pub fn load(name_or_path: &str) -> Result<Model, RobotError> {
     applied(robot::load(name_or_path)?)
 }
 
-/// The same with estimates in place of what is not known of an arm.
+/// The same with estimates for unknown numbers of an arm.
 ///
 /// # Errors
-/// As of [`load`].
+/// As for [`load`].
 pub fn load_estimated(name_or_path: &str) -> Result<Model, RobotError> {
     with_estimates(robot::load(name_or_path)?)
 }
 
-/// A model with estimates in place of what is not known of an arm, and with its effects.
+/// A model with estimates for unknown numbers of an arm and with its effects.
 ///
 /// # Errors
-/// As of [`load`].
+/// As for [`load`].
 pub fn with_estimates(model: Model) -> Result<Model, RobotError> {
     robot::prior::check_mass(&model)?;
     let model = applied(robot::prior::estimated(model))?;
@@ -35,28 +35,28 @@ pub fn with_estimates(model: Model) -> Result<Model, RobotError> {
     Ok(model)
 }
 
-/// A plausible robot as a model of its own.
+/// A plausible robot as a model.
 ///
 /// # Errors
-/// Its effects lead to what no robot has.
+/// The result of its effects is impossible.
 pub fn drawn(model: &Model, robot: &Plausible) -> Result<Model, RobotError> {
-    // Laws are those of the effects: they are worked out anew.
+    // The laws depend on the effects and are computed again.
     applied(Model { laws: Vec::new(), ..robot.applied(model) })
 }
 
-/// The same of a text; `file` names it in messages.
+/// The robot of a Robot TOML text with its effects; `file` is its name in messages.
 ///
 /// # Errors
-/// As of [`load`].
+/// As for [`load`].
 pub fn from_toml(file: &str, text: &str) -> Result<Model, RobotError> {
     applied(robot::from_toml(file, text)?)
 }
 
-/// Applies the effects of a model to its numbers and laws; effects that are not numbers of the model
-/// stay in its list.
+/// Applies the effects of a model to its numbers and laws; effects that are not numbers of the
+/// model stay in its list.
 ///
 /// # Errors
-/// An effect is not known or leads to what no robot has.
+/// An effect is unknown or its result is impossible.
 pub fn applied(mut model: Model) -> Result<Model, RobotError> {
     let mut kept = Vec::new();
     for given in std::mem::take(&mut model.effects) {
@@ -82,13 +82,13 @@ pub fn applied(mut model: Model) -> Result<Model, RobotError> {
             kept.push(given);
         }
     }
-    // Last: other effects change the Coulomb friction.
+    // After the other effects, which change the Coulomb friction.
     kept.iter().try_for_each(|given| check_breakaway(&model, given))?;
     model.effects = kept;
     Ok(model)
 }
 
-/// Torques that effects of the whole motion add to what a log shows, by joint \[Nm\].
+/// Additional logged torques of effects of the whole motion, per joint \[Nm\].
 #[must_use]
 pub fn of_the_whole_motion(motion: &Motion<'_>) -> Vec<Vec<f64>> {
     let model = motion.model;
@@ -103,7 +103,7 @@ pub fn of_the_whole_motion(motion: &Motion<'_>) -> Vec<Vec<f64>> {
             for (to, added) in effect.added(motion, joint, &coordinates) {
                 sum[to].iter_mut().zip(added).for_each(|(sum, x)| *sum += x);
             }
-            // One of the robot is not one of each joint.
+            // An effect of the robot occurs once, not per joint.
             if effect.scope == Scope::Robot {
                 break;
             }
@@ -112,7 +112,7 @@ pub fn of_the_whole_motion(motion: &Motion<'_>) -> Vec<Vec<f64>> {
     sum
 }
 
-/// Coordinates of an effect at a joint; `None` where it has none of it.
+/// Coordinates of an effect at a joint; `None` if the joint does not have it.
 fn coordinates(effect: &Effect, given: &EffectParameters, joint: usize) -> Option<Vec<f64>> {
     let parameters: Vec<f64> =
         effect.parameters.iter().map(|parameter| value(given, parameter.name, joint)).collect();
@@ -155,7 +155,7 @@ fn check_names(effect: &Effect, given: &EffectParameters, dof: usize) -> Result<
 
 fn check_bounds(effect: &Effect, given: &EffectParameters, dof: usize) -> Result<(), RobotError> {
     for joint in (effect.joints)(dof) {
-        // All 0 stands for a joint without the effect.
+        // All 0: a joint without the effect.
         let named = |p: &&Parameter| value(given, p.name, joint) != 0.0;
         if effect.parameters.iter().all(|p| !named(&p)) {
             continue;
@@ -176,7 +176,7 @@ fn check_bounds(effect: &Effect, given: &EffectParameters, dof: usize) -> Result
     Ok(())
 }
 
-/// Rejects friction below zero at breakaway: the joint would drive itself.
+/// Rejects negative friction at breakaway, which would drive the joint.
 fn check_breakaway(model: &Model, given: &EffectParameters) -> Result<(), RobotError> {
     if given.id != "stribeck" {
         return Ok(());
@@ -195,7 +195,7 @@ fn check_breakaway(model: &Model, given: &EffectParameters) -> Result<(), RobotE
     Ok(())
 }
 
-/// A parameter that is given of a joint; 0 where it is not.
+/// The given value of a parameter at a joint; 0 without one.
 fn value(given: &EffectParameters, name: &str, joint: usize) -> f64 {
     let found = given.values.iter().find(|(known, _)| known == name);
     found.map_or(0.0, |(_, given)| match given {
@@ -204,7 +204,7 @@ fn value(given: &EffectParameters, name: &str, joint: usize) -> f64 {
     })
 }
 
-/// Rejects numbers that no robot has.
+/// Rejects impossible numbers.
 fn check_model(model: &Model, given: &EffectParameters) -> Result<(), RobotError> {
     let friction = &model.friction;
     for (name, list) in [("coulomb", &friction.coulomb), ("viscous", &friction.viscous)] {

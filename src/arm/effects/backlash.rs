@@ -1,4 +1,4 @@
-//! A gear with a gap, which the motor crosses where the load changes sides.
+//! A gear with a gap, which the motor crosses when the load changes its sign.
 
 use super::effect::{
     Channel, Coordinate, Effect, Form, Role, Scope, bounded, every, shape, shaped,
@@ -6,7 +6,6 @@ use super::effect::{
 use super::elasticity::displaced;
 use super::motion::Motion;
 
-/// Backlash.
 pub(super) const BACKLASH: Effect = Effect {
     id: "backlash",
     channel: Channel::Torque,
@@ -42,16 +41,16 @@ pub(super) const BACKLASH: Effect = Effect {
     form: Form::Series(added),
 };
 
-/// Widths that are tried, of the torque.
+/// Tried widths, as shares of the torque.
 const WIDTHS: [f64; 4] = [0.0, 0.02, 0.06, 0.2];
 
-/// Angles by which the torque bends gears that are tried; 0: they are stiff.
+/// Tried deflections of gears under the torque \[rad\]; 0 for stiff gears.
 const DEFLECTIONS: [f64; 4] = [0.0, 2.5e-4, 8e-4, 2.5e-3];
 
 fn added(motion: &Motion<'_>, joint: usize, values: &[f64]) -> Vec<(usize, Vec<f64>)> {
     let [gap, width, stiffness] = [values[0], values[1], values[2]];
     if stiffness > 0.0 {
-        // There is one way to a side.
+        // Width and stiffness exclude each other.
         return if width > 0.0 {
             Vec::new()
         } else {
@@ -67,7 +66,7 @@ fn added(motion: &Motion<'_>, joint: usize, values: &[f64]) -> Vec<(usize, Vec<f
     crossed(motion, joint, gap)
 }
 
-/// The gear carries nothing while its gap is crossed.
+/// The gear transmits no torque while its gap is crossed.
 fn crossed(motion: &Motion<'_>, joint: usize, gap: f64) -> Vec<(usize, Vec<f64>)> {
     let step = motion.step();
     let gear = &motion.gear[joint];
@@ -87,13 +86,13 @@ fn crossed(motion: &Motion<'_>, joint: usize, gap: f64) -> Vec<(usize, Vec<f64>)
     motion.at_joints(joint, series)
 }
 
-/// Share of critical damping of a gear at a side.
+/// Damping ratio of a gear in contact.
 const DAMPING: f64 = 0.4;
-/// Largest product of eigenfrequency and step of the integration, and steps in a row at most.
+/// Largest product of eigenfrequency and integration step; largest number of steps per row.
 const FINEST: f64 = 0.3;
 const MOST_STEPS: f64 = 400.0;
 
-/// A gear with a gap that gives at its sides.
+/// A gear with a gap and elastic sides.
 struct Gear {
     gap: f64,
     stiffness: f64,
@@ -102,7 +101,7 @@ struct Gear {
 }
 
 impl Gear {
-    /// How far the link is behind \[rad\] that falls through the gap and is caught, by its load \[Nm\]
+    /// Lag of the link behind the motor \[rad\] through gap and elastic sides, from its load \[Nm\]
     /// and its inertia \[kg m²\].
     fn caught(&self, load: &[f64], inertia: &[f64]) -> Vec<f64> {
         let Gear { gap, stiffness, step, closed } = *self;
@@ -114,13 +113,13 @@ impl Gear {
         let at_rest = |tau: &f64| tau / stiffness + 0.5 * gap * tau.signum();
         let (mut x, mut v) = (load.first().map_or(0.0, at_rest), 0.0);
         let mut behind = vec![0.0; rows];
-        // Of what repeats the second time has no transient left.
+        // In a periodic motion the second pass has no transient.
         for _ in 0..if closed { 2 } else { 1 } {
             for row in 0..rows {
                 behind[row] = x;
                 let last = if closed { 0 } else { row };
                 let next = if row + 1 < rows { row + 1 } else { last };
-                // What would swing faster than the finest step is heavier.
+                // Inertias too small for the finest step are enlarged.
                 let mass = inertia[row].max(stiffness * (h / FINEST).powi(2));
                 let damper = 2.0 * DAMPING * (stiffness * mass).sqrt();
                 for k in 0..steps as usize {
@@ -144,7 +143,7 @@ mod tests {
     const STIFFNESS: f64 = 2e4;
     const LOAD: f64 = 100.0;
 
-    /// Furthest behind under a load that swings `ratio` times as fast as the gear would.
+    /// Largest lag under a load with `ratio` times the eigenfrequency of the gear.
     fn furthest(gap: f64, ratio: f64) -> f64 {
         let period = TAU / (ratio * (STIFFNESS / INERTIA).sqrt());
         let (count, cycles) = (4000, 8.0);
@@ -161,7 +160,7 @@ mod tests {
         behind.iter().fold(0.0, |most: f64, x| most.max(x.abs()))
     }
 
-    /// Without a gap it is a damped oscillator; slowly, a gap adds half of its width.
+    /// Without a gap: a damped oscillator. At low frequency a gap adds half of its width.
     #[test]
     fn links_fall_through_the_gap_and_swing() {
         let still = LOAD / STIFFNESS;

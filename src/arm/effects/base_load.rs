@@ -2,7 +2,6 @@
 
 use super::effect::{Channel, Effect, Form, Scope, free};
 
-/// Controller, fans, brakes.
 pub(super) const BASE_LOAD: Effect = Effect {
     id: "base_load",
     channel: Channel::Power,

@@ -1,4 +1,4 @@
-//! A robot that does not stand upright, or does so where it is not said to.
+//! A robot that is tilted, or not mounted as stated.
 
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -7,7 +7,6 @@ use crate::arm::robot::Model;
 use super::effect::{Channel, Effect, Form, Scope, bounded, free, linear};
 use super::waves::AMPLITUDE_AND_PHASE;
 
-/// Tilt of the base.
 pub(super) const BASE_TILT: Effect = Effect {
     id: "base_tilt",
     channel: Channel::Torque,
@@ -28,7 +27,7 @@ pub(super) const BASE_TILT: Effect = Effect {
     form: Form::Model(change),
 };
 
-/// The base leans towards (x, y) by the length of that \[rad\].
+/// The base tilts towards (x, y) by the length of this vector \[rad\].
 fn change(model: &mut Model, _: usize, values: &[f64]) {
     let lean = UnitQuaternion::from_scaled_axis(Vector3::new(-values[1], values[0], 0.0));
     model.kinematics.base.rotation = lean * model.kinematics.base.rotation;

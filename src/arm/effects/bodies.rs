@@ -1,12 +1,12 @@
-//! Rigid bodies that are added to others.
+//! Adds rigid bodies to links.
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
 
 use crate::arm::dynamics::{RIGID, body_parameters, link_of, link_parameters, pseudo_inertia};
 use crate::arm::robot::Link;
 
-/// `link` with a body: mass, first moments, moments (xx, yy, zz, xy, xz, yz) about the origin of
-/// `frame`, in its axes. The body may have a moment without a mass.
+/// `link` with an added body: mass, first moments, moments (xx, yy, zz, xy, xz, yz) about the
+/// origin of `frame`, in its axes. The body may have moments without mass.
 #[must_use]
 pub fn added(link: &Link, frame: &Isometry3<f64>, body: &[f64]) -> Link {
     if body.iter().all(|x| *x == 0.0) {
@@ -18,13 +18,13 @@ pub fn added(link: &Link, frame: &Isometry3<f64>, body: &[f64]) -> Link {
     if sum.mass == 0.0 { Link { com: link.com, ..sum } } else { sum }
 }
 
-/// Mass, centre, moments about it, of a body about an origin.
+/// Mass, centre of mass and moments about it, from moments about an origin.
 pub(super) fn about_centre(x: &[f64]) -> Vec<f64> {
     let Link { mass, com: c, inertia: i } = link_of(x);
     vec![mass, c.x, c.y, c.z, i.m11, i.m22, i.m33, i.m12, i.m13, i.m23]
 }
 
-/// Mass, first moments, moments about the origin, of a body about its centre.
+/// Mass, first moments and moments about the origin, from moments about the centre of mass.
 pub(super) fn about_origin(x: &[f64]) -> Vec<f64> {
     let mut all = [0.0; RIGID];
     all.iter_mut().zip(x).for_each(|(to, from)| *to = *from);

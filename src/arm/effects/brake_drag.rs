@@ -1,4 +1,4 @@
-//! A holding brake that does not let go.
+//! A holding brake that does not release fully.
 
 use crate::arm::robot::LawState;
 
@@ -7,7 +7,6 @@ use super::effect::{
     Channel, Coordinate, Effect, Form, Role, Scope, Values, bounded, every, free, linear, shaped,
 };
 
-/// Drag of a brake.
 pub(super) const BRAKE_DRAG: Effect = Effect {
     id: "brake_drag",
     channel: Channel::Torque,

@@ -4,7 +4,6 @@ use crate::arm::robot::Model;
 
 use super::effect::{Channel, Effect, Form, Scope, free};
 
-/// Coils of the brakes.
 pub(super) const BRAKE_POWER: Effect = Effect {
     id: "brake_power",
     channel: Channel::Power,

@@ -1,9 +1,8 @@
-//! A dress pack that pulls a joint towards a middle.
+//! A dress pack that pulls a joint towards a central angle.
 
 use super::effect::{Channel, Effect, Form, Scope, free, linear};
 use super::springs::{STIFFNESS_AND_CENTRE, spring};
 
-/// Hose or cable.
 pub(super) const CABLE: Effect = Effect {
     id: "cable",
     channel: Channel::Torque,

@@ -1,4 +1,4 @@
-//! A force from outside.
+//! An external force.
 
 use std::f64::consts::PI;
 
@@ -14,7 +14,6 @@ use super::effect::{
 use super::motion::Motion;
 use super::scale::Scale;
 
-/// A force from outside.
 pub(super) const CONTACT: Effect = Effect {
     id: "contact",
     channel: Channel::Torque,
@@ -53,7 +52,7 @@ fn usual(of: &Scale) -> f64 {
     GRAVITY * of.payload
 }
 
-/// Coordinates are the components of the force, how it grows, then the window.
+/// Coordinates are the force components, the rise, then the window.
 const SIZE_AND_DIRECTION: Published = Published {
     parameters: |x| {
         let flat = x[0].hypot(x[1]);
@@ -88,7 +87,7 @@ fn added(motion: &Motion<'_>, _: usize, values: &[f64]) -> Vec<(usize, Vec<f64>)
     series.into_iter().enumerate().collect()
 }
 
-/// Share of the force that acts at a time, of rise, start, end and period.
+/// Acting share of the force at a time, with `window` = rise, start, end and period.
 fn share_of(t: f64, window: &[f64]) -> f64 {
     let [rise, start, end, period] = window else { return 0.0 };
     if !within(t, *start, *end, *period) {
@@ -98,7 +97,7 @@ fn share_of(t: f64, window: &[f64]) -> f64 {
     if *rise > 0.0 { ((PI * x).sin() / (PI * rise).sin()).min(1.0) } else { 1.0 }
 }
 
-/// Whether a time is in a window that comes again.
+/// Whether a time is in a periodic window.
 pub(super) fn within(t: f64, start: f64, end: f64, period: f64) -> bool {
     (start..=end).contains(&in_period(t, period))
 }
@@ -107,7 +106,7 @@ fn in_period(t: f64, period: f64) -> f64 {
     if period > 0.0 && t.is_finite() { t.rem_euclid(period) } else { t }
 }
 
-/// An arm without weight but at its flange, where gravity is the force.
+/// A massless arm with a mass at its flange, whose gravity is the force.
 fn pulled(model: &Model, force: &Vector3<f64>, size: f64) -> Model {
     let mut pulled = model.clone();
     let nothing = Link { mass: 0.0, com: Vector3::zeros(), inertia: Matrix3::zeros() };
@@ -117,7 +116,7 @@ fn pulled(model: &Model, force: &Vector3<f64>, size: f64) -> Model {
     if let Some(last) = pulled.links.last_mut() {
         *last = with_body(last, &model.kinematics.flange, &body);
     }
-    // Gravity pulls where the force does.
+    // Rotate gravity into the direction of the force.
     let down = -Vector3::z();
     let turn = Rotation3::rotation_between(&(force / size), &down)
         .unwrap_or_else(|| Rotation3::from_axis_angle(&Vector3::x_axis(), PI));

@@ -4,7 +4,6 @@ use crate::arm::robot::Model;
 
 use super::effect::{Channel, Effect, Form, Scope, every, free};
 
-/// Loss in the windings.
 pub(super) const COPPER_LOSS: Effect = Effect {
     id: "copper_loss",
     channel: Channel::Power,

@@ -1,9 +1,8 @@
-//! Torque that lags behind the current where the iron saturates.
+//! Torque below proportionality to current due to saturation of the iron.
 
 use super::effect::{Channel, Effect, Form, Scope, bounded, every, linear, shape};
 use super::motion::Motion;
 
-/// Saturation of the motor.
 pub(super) const CURRENT_SATURATION: Effect = Effect {
     id: "current_saturation",
     channel: Channel::Torque,
@@ -29,12 +28,12 @@ pub(super) const CURRENT_SATURATION: Effect = Effect {
     form: Form::Series(added),
 };
 
-/// The exponent of a symmetric curve's first term.
+/// The first exponent of a symmetric curve.
 const CUBIC: f64 = 2.0;
 
 fn added(motion: &Motion<'_>, joint: usize, values: &[f64]) -> Vec<(usize, Vec<f64>)> {
     let tau = &motion.torque[joint];
-    // The same torque for every motion, where the robot has one.
+    // The torque limit, if known, is the same for every motion.
     let limit = motion.model.limits.torque.as_ref().map(|of| of[joint]);
     let largest = limit.unwrap_or_else(|| tau.iter().fold(0.0, |m: f64, x| m.max(x.abs())));
     let largest = largest.max(1e-9);
@@ -42,7 +41,7 @@ fn added(motion: &Motion<'_>, joint: usize, values: &[f64]) -> Vec<(usize, Vec<f
     vec![(joint, series.collect())]
 }
 
-/// Gain less 1 at a share of the largest torque, of error and exponent.
+/// Gain − 1 at a share of the largest torque, with `values` = error and exponent.
 fn gain(share: f64, values: &[f64]) -> f64 {
     let exponent = if values[1] > 0.0 { values[1] } else { CUBIC };
     values[0] * share.abs().powf(exponent)

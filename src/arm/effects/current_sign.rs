@@ -1,9 +1,8 @@
-//! A current whose sign is the other one.
+//! A current with inverted sign.
 
 use super::effect::{Channel, Effect, Form, Scope, bounded, every};
 use super::motion::Motion;
 
-/// Sign of the current.
 pub(super) const CURRENT_SIGN: Effect = Effect {
     id: "current_sign",
     channel: Channel::Torque,

@@ -1,4 +1,4 @@
-//! What an effect is.
+//! The definition of an effect.
 
 use crate::arm::dynamics::Load;
 use crate::arm::robot::{Law, LawState, Model};
@@ -6,88 +6,88 @@ use crate::arm::robot::{Law, LawState, Model};
 use super::motion::Motion;
 use super::scale::Scale;
 
-/// The measured channel in which an effect shows.
+/// The measured channel of an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Channel {
-    /// Torques of the joints.
+    /// Joint torques.
     Torque,
-    /// How long movements take, where the robot goes.
+    /// Durations and paths of movements.
     Motion,
     /// Electrical power.
     Power,
 }
 
-/// What an effect is a property of.
+/// Owner of an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scope {
     /// Single joints.
     Joint,
-    /// The robot as a whole.
+    /// The whole robot.
     Robot,
 }
 
-/// Values in the order of an effect's parameters; those beyond are 0.
+/// Values in the order of the parameters of an effect, padded with 0.
 pub type Values = [f64; Law::PARAMETERS];
 
-/// A parameter as robot files and reports have it.
+/// A parameter in robot files and reports.
 #[derive(Clone, Copy, Debug)]
 pub struct Parameter {
     /// Its name.
     pub name: &'static str,
     /// Its unit.
     pub unit: &'static str,
-    /// What it is.
+    /// Its description.
     pub what: &'static str,
-    /// Bounds of what can be.
+    /// Bounds of possible values.
     pub bounds: [f64; 2],
 }
 
 impl Parameter {
-    /// Whether some values of it cannot be.
+    /// Whether its values are limited.
     #[must_use]
     pub fn is_bounded(&self) -> bool {
         self.bounds.iter().any(|bound| bound.is_finite())
     }
 }
 
-/// A coordinate of the torque: one in which it is linear, or one that shapes it.
+/// A coordinate of the torque, either linear or a shape parameter.
 #[derive(Clone, Copy)]
 pub struct Coordinate {
-    /// How it acts.
+    /// Its role.
     pub role: Role,
     /// Prior standard deviation at a joint.
     pub usual: fn(&Scale) -> f64,
 }
 
-/// How a coordinate acts.
+/// Role of a coordinate.
 #[derive(Clone, Copy)]
 pub enum Role {
     /// The torque is proportional to it.
     Linear,
-    /// It shapes the torque: values that are tried, ascending.
+    /// A shape parameter with tried values, ascending.
     Shape(fn(&Scale) -> Vec<f64>),
-    /// An integer or the like: no value between those that are tried.
+    /// A discrete shape parameter: only tried values are possible.
     Choice(fn(&Scale) -> Vec<f64>),
 }
 
-/// Torques by joint \[Nm\] in a motion, of the coordinates of a joint, from 0.
+/// Torques per joint \[Nm\] in a motion from the coordinates of a joint (from 0).
 pub type OfMotion = fn(&Motion<'_>, usize, &[f64]) -> Vec<(usize, Vec<f64>)>;
 
-/// How an effect works. Functions take the coordinates of one joint, or of the robot.
+/// Implementation of an effect. Functions take the coordinates of one joint or of the robot.
 #[derive(Clone, Copy)]
 pub enum Form {
-    /// Other numbers of the model.
+    /// Changed numbers of the model.
     Model(fn(&mut Model, usize, &[f64])),
-    /// A law of friction, or between the links.
+    /// A law of friction or of torque between the links.
     Law {
         /// Whether it is friction.
         dissipates: bool,
         /// Torque \[Nm\].
         torque: fn(&LawState, &Values) -> f64,
     },
-    /// Torques that depend on the whole motion, by joint.
+    /// Torques per joint that depend on the whole motion.
     Series(OfMotion),
-    /// It changes no torque.
+    /// No change of torques.
     Elsewhere,
 }
 
@@ -95,58 +95,58 @@ pub enum Form {
 pub struct Effect {
     /// Id in JSON, robot files and options.
     pub id: &'static str,
-    /// The channel in which it shows.
+    /// The measured channel.
     pub channel: Channel,
-    /// Whether single joints have it or the robot.
+    /// Whether it belongs to single joints or the robot.
     pub scope: Scope,
     /// Its name.
     pub title: &'static str,
     /// The law.
     pub law: &'static str,
-    /// Where the law is from.
+    /// Source of the law.
     pub source: &'static str,
-    /// Parameters as they are written.
+    /// Parameters in files and reports.
     pub parameters: &'static [Parameter],
-    /// Coordinates as they are estimated.
+    /// Coordinates of the estimation.
     pub coordinates: &'static [Coordinate],
-    /// The parameters of coordinates; `None` where they are the same.
+    /// Conversion of coordinates to parameters; `None` if they are equal.
     pub published: Option<Published>,
-    /// Joints that can have it, from 0, of a robot with so many.
+    /// Joints that can have it, from 0, by the number of joints.
     pub joints: fn(usize) -> Vec<usize>,
-    /// Ids whose coordinates are fitted with it, because they are not separable beforehand.
+    /// Ids of effects that are fitted together with it, as they are not separable beforehand.
     pub brings: &'static [&'static str],
-    /// Ids of the effects that it is confused with.
+    /// Ids of effects with similar torques.
     pub confused: &'static [&'static str],
     /// An experiment that separates it from those: options of `joulepath excite`, and the reason.
     pub experiment: [&'static str; 2],
-    /// How it works.
+    /// Its implementation.
     pub form: Form,
 }
 
-/// From coordinates to parameters and back.
+/// Conversions between coordinates and parameters.
 #[derive(Clone, Copy)]
 pub struct Published {
-    /// Parameters of coordinates.
+    /// Parameters from coordinates.
     pub parameters: fn(&[f64]) -> Vec<f64>,
-    /// Coordinates of parameters.
+    /// Coordinates from parameters.
     pub coordinates: fn(&[f64]) -> Vec<f64>,
 }
 
 impl Effect {
-    /// Parameters of coordinates.
+    /// Parameters from coordinates.
     #[must_use]
     pub fn parameters_of(&self, coordinates: &[f64]) -> Vec<f64> {
         self.published.map_or_else(|| coordinates.to_vec(), |p| (p.parameters)(coordinates))
     }
 
-    /// Coordinates of parameters.
+    /// Coordinates from parameters.
     #[must_use]
     pub fn coordinates_of(&self, parameters: &[f64]) -> Vec<f64> {
         self.published.map_or_else(|| parameters.to_vec(), |p| (p.coordinates)(parameters))
     }
 
-    /// Torque that a log of the motion shows more with the effect, by joint that it reaches
-    /// \[Nm\]. `joint` counts where the effect is one of joints.
+    /// Additional logged torque due to the effect, per affected joint \[Nm\]. `joint` is used only
+    /// for effects of joints.
     #[must_use]
     pub fn added(
         &self,
@@ -178,7 +178,7 @@ impl Effect {
     }
 }
 
-/// Values with zeros behind them.
+/// Values padded with zeros.
 #[must_use]
 pub(super) fn padded(values: &[f64]) -> Values {
     let mut padded = [0.0; Law::PARAMETERS];
@@ -192,19 +192,19 @@ pub(super) fn every(dof: usize) -> Vec<usize> {
     (0..dof).collect()
 }
 
-/// Usual size of a coordinate that has none of its own: shapes.
+/// Prior standard deviation of shape coordinates: none.
 #[must_use]
 pub(super) fn shaped(_: &Scale) -> f64 {
     0.0
 }
 
-/// A parameter of any sign.
+/// An unbounded parameter.
 #[must_use]
 pub(super) const fn free(name: &'static str, unit: &'static str, what: &'static str) -> Parameter {
     Parameter { name, unit, what, bounds: [f64::NEG_INFINITY, f64::INFINITY] }
 }
 
-/// A parameter within bounds.
+/// A bounded parameter.
 #[must_use]
 pub(super) const fn bounded(
     name: &'static str,
@@ -215,13 +215,13 @@ pub(super) const fn bounded(
     Parameter { name, unit, what, bounds }
 }
 
-/// A linear coordinate of a usual size.
+/// A linear coordinate with its prior standard deviation.
 #[must_use]
 pub(super) const fn linear(usual: fn(&Scale) -> f64) -> Coordinate {
     Coordinate { role: Role::Linear, usual }
 }
 
-/// A coordinate that shapes the law.
+/// A shape coordinate.
 #[must_use]
 pub(super) const fn shape(tried: fn(&Scale) -> Vec<f64>) -> Coordinate {
     Coordinate { role: Role::Shape(tried), usual: shaped }

@@ -1,11 +1,10 @@
-//! A joint that gives way: the link is behind the motor, where the log has its angle.
+//! An elastic joint: the link angle lags behind the logged motor angle.
 
 use crate::arm::dynamics::Load;
 
 use super::effect::{Channel, Effect, Form, Published, Scope, bounded, every, linear};
 use super::motion::Motion;
 
-/// Elasticity of a joint.
 pub(super) const ELASTICITY: Effect = Effect {
     id: "elasticity",
     channel: Channel::Torque,
@@ -34,8 +33,8 @@ fn added(motion: &Motion<'_>, joint: usize, values: &[f64]) -> Vec<(usize, Vec<f
     displaced(motion, joint, &behind)
 }
 
-/// What changes where the link is `behind` \[rad\] the motor: torques are those of the rotor where
-/// the log is, and of the bodies where they are.
+/// Change of the torques if the link is `behind` \[rad\] the motor: rotor torques at the logged
+/// angle, rigid-body torques at the link angle.
 pub(super) fn displaced(
     motion: &Motion<'_>,
     joint: usize,

@@ -1,8 +1,7 @@
-//! An angle that is not where the log says: calibration, a revolution counter that slipped.
+//! An angle that differs from the log: calibration error, slipped revolution counter.
 
 use super::effect::{Channel, Effect, Form, Scope, bounded, every, linear};
 
-/// Offset of an angle.
 pub(super) const ENCODER_OFFSET: Effect = Effect {
     id: "encoder_offset",
     channel: Channel::Torque,

@@ -1,4 +1,4 @@
-//! Torques behind a filter.
+//! Torques logged after a filter.
 
 use super::effect::{
     Channel, Coordinate, Effect, Form, Role, Scope, bounded, every, shape, shaped,
@@ -6,7 +6,6 @@ use super::effect::{
 use super::motion::Motion;
 use super::response::Response;
 
-/// Lag of a filter.
 pub(super) const FILTER_LAG: Effect = Effect {
     id: "filter_lag",
     channel: Channel::Torque,

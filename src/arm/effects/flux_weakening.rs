@@ -1,9 +1,8 @@
-//! A torque constant that falls at speed.
+//! A torque constant that falls at high speed.
 
 use super::effect::{Channel, Effect, Form, Scope, bounded, every, linear, shape};
 use super::motion::Motion;
 
-/// Flux weakening.
 pub(super) const FLUX_WEAKENING: Effect = Effect {
     id: "flux_weakening",
     channel: Channel::Torque,
@@ -30,7 +29,7 @@ pub(super) const FLUX_WEAKENING: Effect = Effect {
 fn added(motion: &Motion<'_>, joint: usize, values: &[f64]) -> Vec<(usize, Vec<f64>)> {
     let [error, from] = [values[0], values[1]];
     let rates = &motion.rates[joint];
-    // The same speed for every motion, where the robot has one.
+    // The speed limit, if known, is the same for every motion.
     let limit = motion.model.limits.velocity.as_ref().map(|of| of[joint]);
     let fastest = limit.unwrap_or_else(|| rates.iter().fold(0.0, |m: f64, x| m.max(x.abs())));
     let fastest = fastest.max(from + 1e-9);

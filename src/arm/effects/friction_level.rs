@@ -4,7 +4,6 @@ use crate::arm::robot::Model;
 
 use super::effect::{Channel, Effect, Form, Scope, every, free, linear};
 
-/// Level of friction.
 pub(super) const FRICTION_LEVEL: Effect = Effect {
     id: "friction_level",
     channel: Channel::Torque,

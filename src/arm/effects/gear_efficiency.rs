@@ -1,10 +1,9 @@
-//! A gear that loses another share where it drives than where it is driven.
+//! A gear with different losses when it drives and when it is driven.
 
 use crate::arm::robot::LawState;
 
 use super::effect::{Channel, Effect, Form, Scope, Values, bounded, every, linear};
 
-/// Efficiency of the gear.
 pub(super) const GEAR_EFFICIENCY: Effect = Effect {
     id: "gear_efficiency",
     channel: Channel::Torque,

@@ -1,9 +1,8 @@
-//! A spring or balancer that the model does not have.
+//! A spring or balancer that is missing in the model.
 
 use super::effect::{Channel, Effect, Form, Scope, free, linear};
 use super::springs::{STIFFNESS_AND_CENTRE, spring};
 
-/// Spring or balancer.
 pub(super) const GRAVITY_SPRING: Effect = Effect {
     id: "gravity_spring",
     channel: Channel::Torque,

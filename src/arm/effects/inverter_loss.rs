@@ -2,7 +2,6 @@
 
 use super::effect::{Channel, Effect, Form, Scope, free};
 
-/// Loss of inverter and cables.
 pub(super) const INVERTER_LOSS: Effect = Effect {
     id: "inverter_loss",
     channel: Channel::Power,

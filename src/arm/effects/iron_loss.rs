@@ -2,7 +2,6 @@
 
 use super::effect::{Channel, Effect, Form, Scope, every, free};
 
-/// Loss in the iron.
 pub(super) const IRON_LOSS: Effect = Effect {
     id: "iron_loss",
     channel: Channel::Power,

@@ -8,7 +8,6 @@ use super::bodies::added;
 use super::effect::{Channel, Effect, Form, Scope, every, free, linear};
 use super::scale::Scale;
 
-/// Masses, centres and inertias of the links.
 pub(super) const LINK_PARAMETERS: Effect = Effect {
     id: "link_parameters",
     channel: Channel::Torque,
@@ -48,7 +47,7 @@ pub(super) const LINK_PARAMETERS: Effect = Effect {
     form: Form::Model(change),
 };
 
-/// Far off: share of a mass and of moments, displacement of a centre \[m\].
+/// Large deviations: share of a mass, share of moments, displacement of a centre \[m\].
 const MASS: f64 = 0.4;
 const MOMENT: f64 = 0.8;
 const AWAY: f64 = 0.05;

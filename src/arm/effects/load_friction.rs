@@ -1,10 +1,9 @@
-//! Friction that grows with what the gear carries.
+//! Friction that grows with the gear torque.
 
 use crate::arm::robot::LawState;
 
 use super::effect::{Channel, Effect, Form, Scope, Values, bounded, every, linear};
 
-/// Friction of the load.
 pub(super) const LOAD_FRICTION: Effect = Effect {
     id: "load_friction",
     channel: Channel::Torque,

@@ -1,7 +1,7 @@
-//! Effects beyond rigid bodies, Coulomb and viscous friction: one file for each, with its law, its
-//! prior and its documentation.
+//! Effects beyond rigid bodies, Coulomb and viscous friction: one file per effect with its law,
+//! prior and documentation.
 //!
-//! [`ALL`] is the register. An effect that is in it can be written in a robot file, is in every
+//! [`ALL`] is the register. An effect in it can be written in a robot file, is part of every
 //! prediction and simulation, and can be found by a diagnosis.
 
 mod acceleration_limit;

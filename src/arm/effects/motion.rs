@@ -1,4 +1,4 @@
-//! A motion, and the torques of the model in it.
+//! A motion with the torques of the model.
 
 use std::sync::{Arc, OnceLock};
 
@@ -8,44 +8,44 @@ use crate::arm::dynamics::{
 };
 use crate::arm::robot::{LawState, MAX_DOF, Model};
 
-/// Rows of a motion with the model's torques. Series are by joint, then by row.
+/// Rows of a motion with the torques of the model. Series are per joint, then per row.
 #[derive(Clone, Debug)]
 pub struct Motion<'a> {
     /// The robot.
     pub model: &'a Model,
     /// Times \[s\].
     pub t: Vec<f64>,
-    /// Positions as the log has them \[rad\].
+    /// Logged positions \[rad\].
     pub q: Vec<Vec<f64>>,
-    /// Rates \[rad/s\].
+    /// Velocities \[rad/s\].
     pub qd: Vec<Vec<f64>>,
     /// Accelerations \[rad/s²\].
     pub qdd: Vec<Vec<f64>>,
-    /// Whether the last row is followed by the first one.
+    /// Whether the motion is periodic: the first row follows the last one.
     pub closed: bool,
-    /// Rate of each motor, at its joint, at or below which it has no sense \[rad/s\].
+    /// Speed of each motor, at its joint, up to which it is at rest \[rad/s\].
     pub rest: Vec<f64>,
-    /// Rates of the motors over the gear ratios \[rad/s\].
+    /// Motor speeds over the gear ratios \[rad/s\].
     pub rates: Vec<Vec<f64>>,
-    /// Their senses: 1, −1, or 0 at rest.
+    /// Their signs: 1, −1, or 0 at rest.
     pub senses: Vec<Vec<f64>>,
-    /// Torques of the rigid bodies through the gears \[Nm\].
+    /// Rigid-body torques through the gears \[Nm\].
     pub gear: Vec<Vec<f64>>,
-    /// Torques that a log shows, by the model \[Nm\].
+    /// Logged torques predicted by the model \[Nm\].
     pub torque: Vec<Vec<f64>>,
-    /// The model with the bodies of another model, where laws use these.
+    /// The model with the links of another model, if laws use these.
     carried: Option<Arc<Model>>,
-    /// Torques that a log shows by that model, once they are asked for.
+    /// Logged torques predicted by that model, computed on demand.
     shown: OnceLock<Vec<Vec<f64>>>,
-    /// Torques of the rigid bodies, once they are asked for.
+    /// Rigid-body torques, computed on demand.
     bodies: OnceLock<Vec<Vec<f64>>>,
-    /// By joint, inertias of what it turns, once they are asked for.
+    /// Inertias moved by each joint, computed on demand.
     inertia: [OnceLock<Vec<f64>>; MAX_DOF],
 }
 
 impl<'a> Motion<'a> {
-    /// The rows `t` \[s\], `motion` = q, q̇, q̈ by joint. A motor that turns no faster than
-    /// `rest` \[rad/s\] of its joint has no sense.
+    /// The rows `t` \[s\], `motion` = q, q̇, q̈ per joint. A motor is at rest up to the speed
+    /// `rest` \[rad/s\] of its joint.
     #[must_use]
     pub fn new(
         model: &'a Model,
@@ -96,31 +96,31 @@ impl<'a> Motion<'a> {
         motion
     }
 
-    /// Takes the torques through the gears from another model.
+    /// Takes the gear torques from another model.
     pub fn carry(&mut self, other: &Model) {
         let series = [self.q.clone(), self.qd.clone(), self.qdd.clone()];
         self.gear = Motion::new(other, self.t.clone(), series, &self.rest, self.closed).gear;
     }
 
-    /// Makes all laws use the bodies of another model.
+    /// Makes all laws use the links of another model.
     pub fn go_by(&mut self, other: &Model) {
         self.carry(other);
         self.carried = Some(Arc::new(Model { links: other.links.clone(), ..self.model.clone() }));
         (self.shown, self.bodies, self.inertia) = Default::default();
     }
 
-    /// Whether laws use the bodies of another model.
+    /// Whether laws use the links of another model.
     #[must_use]
     pub fn has_other_bodies(&self) -> bool {
         self.carried.is_some()
     }
 
-    /// The model with the bodies that laws use.
+    /// The model with the links that laws use.
     pub(super) fn there(&self) -> &Model {
         self.carried.as_deref().unwrap_or(self.model)
     }
 
-    /// Torques that a log of the motion shows by that model, effects of the whole motion left out.
+    /// Logged torques predicted by that model, without effects of the whole motion.
     pub(super) fn shown(&self) -> &[Vec<f64>] {
         self.shown.get_or_init(|| self.torques_of(self.there(), &Load::none()))
     }
@@ -140,7 +140,7 @@ impl<'a> Motion<'a> {
         }
     }
 
-    /// Position, rate and acceleration in a row.
+    /// Position, velocity and acceleration in a row.
     #[must_use]
     pub fn state(&self, row: usize) -> [[f64; MAX_DOF]; 3] {
         [&self.q, &self.qd, &self.qdd].map(|series| {
@@ -150,7 +150,7 @@ impl<'a> Motion<'a> {
         })
     }
 
-    /// What laws of a joint depend on.
+    /// The arguments of the laws of a joint.
     #[must_use]
     pub fn law_state(&self, row: usize, joint: usize) -> LawState {
         LawState {
@@ -162,8 +162,7 @@ impl<'a> Motion<'a> {
         }
     }
 
-    /// Torques that a log of the motion shows by another model, effects of the whole motion
-    /// left out.
+    /// Logged torques predicted by another model, without effects of the whole motion.
     #[must_use]
     pub fn torques_of(&self, model: &Model, load: &Load) -> Vec<Vec<f64>> {
         let n = model.dof;
@@ -177,8 +176,8 @@ impl<'a> Motion<'a> {
             let mut senses = [0.0; MAX_DOF];
             senses.iter_mut().zip(&self.senses).for_each(|(to, of)| *to = of[row]);
             if model.wrist.coupling != self.model.wrist.coupling {
-                // Another motor 6 turns back at other times. There its torques count, so that
-                // the likely sense is better than none.
+                // With another coupling motor 6 reverses at other times, where the computed sign is
+                // more likely than 0.
                 senses[n - 1] = sense(motor_rates(model, &qd[..n])[n - 1]);
             }
             let tau = rnea(model, &mut data, load, &q[..n], &qd[..n], &qdd[..n]);
@@ -200,7 +199,7 @@ impl<'a> Motion<'a> {
         torques
     }
 
-    /// Torques of the rigid bodies without the rotors \[Nm\].
+    /// Rigid-body torques without rotors \[Nm\].
     #[must_use]
     pub fn rigid(&self, model: &Model, load: &Load) -> Vec<Vec<f64>> {
         let n = model.dof;
@@ -214,12 +213,12 @@ impl<'a> Motion<'a> {
         torques
     }
 
-    /// Torques of the rigid bodies that laws use, without the rotors \[Nm\].
+    /// Rigid-body torques that laws use, without rotors \[Nm\].
     pub(super) fn bodies(&self) -> &[Vec<f64>] {
         self.bodies.get_or_init(|| self.rigid(self.there(), &Load::none()))
     }
 
-    /// Inertia of what a joint turns, of the motion as it was made \[kg m²\].
+    /// Inertia moved by a joint, in the original motion \[kg m²\].
     pub(super) fn inertias(&self, joint: usize) -> &[f64] {
         self.inertia[joint].get_or_init(|| self.turned(joint))
     }
@@ -242,7 +241,7 @@ impl<'a> Motion<'a> {
         (0..self.rows()).map(inertia).collect()
     }
 
-    /// A torque of a motor, over its gear ratio, at the joints that it turns.
+    /// A motor torque, over its gear ratio, at the joints that it moves.
     #[must_use]
     pub fn at_joints(&self, motor: usize, series: Vec<f64>) -> Vec<(usize, Vec<f64>)> {
         let coupling = self.model.wrist.coupling;
@@ -253,7 +252,7 @@ impl<'a> Motion<'a> {
         vec![(motor, series)]
     }
 
-    /// The rate of change of a series, by central differences.
+    /// Time derivative of a series by central differences.
     #[must_use]
     pub fn changes(&self, x: &[f64]) -> Vec<f64> {
         let n = x.len();
@@ -271,7 +270,7 @@ impl<'a> Motion<'a> {
             .collect()
     }
 
-    /// Motors whose friction a joint feels.
+    /// Motors whose friction acts on a joint.
     pub(super) fn motors_of(&self, joint: usize) -> Vec<usize> {
         if joint == 4 && self.model.wrist.coupling != 0.0 && self.model.dof > 5 {
             vec![4, 5]

@@ -2,7 +2,6 @@
 
 use super::effect::{Channel, Effect, Form, Scope};
 
-/// Braking energy that is lost.
 pub(super) const NO_REGENERATION: Effect = Effect {
     id: "no_regeneration",
     channel: Channel::Power,

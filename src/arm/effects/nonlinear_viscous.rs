@@ -1,10 +1,9 @@
-//! Friction of the lubricant that does not grow in proportion to speed.
+//! Lubricant friction that is not proportional to speed.
 
 use crate::arm::robot::LawState;
 
 use super::effect::{Channel, Effect, Form, Scope, Values, bounded, every, free, linear, shape};
 
-/// Nonlinear viscous friction.
 pub(super) const NONLINEAR_VISCOUS: Effect = Effect {
     id: "nonlinear_viscous",
     channel: Channel::Torque,

@@ -1,11 +1,10 @@
-//! What the flange carries beside what is stated.
+//! Load at the flange in addition to the stated one.
 
 use crate::arm::robot::Model;
 
 use super::bodies::{about_centre, about_origin, added};
 use super::effect::{Channel, Effect, Form, Published, Scope, free, linear};
 
-/// Payload.
 pub(super) const PAYLOAD: Effect = Effect {
     id: "payload",
     channel: Channel::Torque,
@@ -45,7 +44,7 @@ pub(super) const PAYLOAD: Effect = Effect {
     form: Form::Model(change),
 };
 
-/// Coordinates are mass, first moments and moments about the flange, which add up.
+/// Coordinates are mass, first moments and moments about the flange, which are additive.
 const MASS_AND_CENTRE: Published =
     Published { parameters: about_centre, coordinates: about_origin };
 

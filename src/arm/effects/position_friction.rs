@@ -1,11 +1,10 @@
-//! Friction that changes once per turn: an eccentric gear, a bent shaft.
+//! Friction with one period per turn: an eccentric gear, a bent shaft.
 
 use crate::arm::robot::LawState;
 
 use super::effect::{Channel, Effect, Form, Scope, Values, bounded, every, free, linear};
 use super::waves::AMPLITUDE_AND_PHASE;
 
-/// Friction over the angle.
 pub(super) const POSITION_FRICTION: Effect = Effect {
     id: "position_friction",
     channel: Channel::Torque,

@@ -3,7 +3,6 @@
 use super::effect::{Channel, Effect, Form, Scope, bounded, every, shape};
 use super::motion::Motion;
 
-/// Pre-sliding.
 pub(super) const PRESLIDING: Effect = Effect {
     id: "presliding",
     channel: Channel::Torque,
@@ -32,7 +31,7 @@ fn added(motion: &Motion<'_>, joint: usize, values: &[f64]) -> Vec<(usize, Vec<f
     let (senses, rates) = (&motion.senses[joint], &motion.rates[joint]);
     let mut z = senses.first().copied().unwrap_or(0.0);
     let mut series = vec![0.0; motion.rows()];
-    // What was before the first row is known after one round.
+    // A second pass of a periodic motion determines the initial state.
     for _ in 0..if motion.closed { 2 } else { 1 } {
         let mut before = if motion.closed { rates.last() } else { rates.first() };
         for (row, to) in series.iter_mut().enumerate() {
@@ -47,7 +46,7 @@ fn added(motion: &Motion<'_>, joint: usize, values: &[f64]) -> Vec<(usize, Vec<f
     motion.at_joints(joint, series)
 }
 
-/// The way of each rate from one row to the next, the rate being a line between them.
+/// Speeds and distances between two rows, for a speed that is linear between them.
 fn paths(first: f64, last: f64, step: f64) -> [(f64, f64); 2] {
     if first * last >= 0.0 {
         let rate = if last == 0.0 { first } else { last };
@@ -61,7 +60,7 @@ fn paths(first: f64, last: f64, step: f64) -> [(f64, f64); 2] {
 mod tests {
     use super::*;
 
-    /// The way between two rows is as long as that between many.
+    /// The distance between two rows equals that of a finer subdivision.
     #[test]
     fn ways_do_not_depend_on_the_step() {
         for (first, last) in [(0.2, 0.5), (0.2, -0.5), (-0.1, 0.0), (0.0, 0.3)] {

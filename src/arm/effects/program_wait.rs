@@ -1,8 +1,7 @@
-//! A wait that the model does not know.
+//! A wait that is not in the model.
 
 use super::effect::{Channel, Effect, Form, Scope, free};
 
-/// A wait that the model does not know.
 pub(super) const PROGRAM_WAIT: Effect = Effect {
     id: "program_wait",
     channel: Channel::Motion,

@@ -1,8 +1,8 @@
-//! All effects that are known.
+//! The register of effects.
 
 use super::effect::Effect;
 
-/// Each effect once.
+/// All known effects.
 pub static ALL: [Effect; 41] = [
     super::payload::PAYLOAD,
     super::link_parameters::LINK_PARAMETERS,
@@ -47,7 +47,7 @@ pub static ALL: [Effect; 41] = [
     super::brake_power::BRAKE_POWER,
 ];
 
-/// The effect of an id.
+/// The effect with this id.
 #[must_use]
 pub fn find(id: &str) -> Option<&'static Effect> {
     ALL.iter().find(|effect| effect.id == id)

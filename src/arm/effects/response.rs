@@ -1,28 +1,28 @@
-//! Response of a series to a delay or a lag, with the jumps of friction between rows.
+//! Delay and lag of a series, with correct jumps of friction between rows.
 
 use super::motion::Motion;
 
-/// Rows over which the beginning of an open motion settles, or rounds of a closed one.
+/// Rows in which an open motion settles at its start; passes of a periodic one.
 const ROUNDS: usize = 2;
-/// Rows at rest that a reversal may take.
+/// Largest number of rows at rest in a reversal.
 const TURNING: isize = 6;
 /// Time constants after which a jump has settled.
 const SETTLED: f64 = 12.0;
-/// Least ratio of a time constant that counts to the interval of the rows.
+/// Smallest ratio of a time constant to the row interval.
 const LEAST: f64 = 1e-6;
 
-/// A delay, then a first-order lag \[s\].
+/// A delay followed by a first-order lag \[s\].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Response {
-    /// Torques come so much later than positions \[s\].
+    /// Delay of torques relative to positions \[s\].
     pub delay: f64,
     /// Time constant of the pole \[s\].
     pub lag: f64,
 }
 
 impl Response {
-    /// The response to a torque of a joint. A jump at a reversal lies where the motor stands still and
-    /// is not spread over the neighbouring rows.
+    /// The response to a torque of a joint. A jump at a reversal is at the standstill of the motor
+    /// and is not spread over the neighbouring rows.
     #[must_use]
     pub fn behind(&self, motion: &Motion<'_>, joint: usize, x: &[f64]) -> Vec<f64> {
         let mut late = self.of_lines(x, motion.step(), motion.closed);
@@ -35,8 +35,8 @@ impl Response {
         late
     }
 
-    /// Difference that the response makes to the torques of all joints (`only` = 0), or of the joint
-    /// `only`, from 1.
+    /// Change of the torques of all joints (`only` = 0) or of the joint `only` (from 1) by the
+    /// response.
     pub(super) fn added(&self, motion: &Motion<'_>, only: f64) -> Vec<(usize, Vec<f64>)> {
         let difference = |joint: usize, tau: &[f64]| -> Vec<f64> {
             self.behind(motion, joint, tau).iter().zip(tau).map(|(late, x)| late - x).collect()
@@ -53,7 +53,7 @@ impl Response {
         if self.lag > LEAST * step { lagged(&late, self.lag / step, closed) } else { late }
     }
 
-    /// Corrects the rows around each reversal of a motor for the jump that a line is not.
+    /// Corrects the rows around each reversal of a motor for the jump between rows.
     fn with_jumps(&self, motion: &Motion<'_>, motor: usize, x: &[f64], late: &mut [f64]) {
         let n = x.len();
         let step = motion.step();
@@ -84,7 +84,7 @@ impl Response {
             };
             let slope = 0.5 * (x[a1] - x[a0] + x[b1] - x[b0]);
             let jump = x[b0] - x[a1] - slope * (b - a) as f64;
-            // The jump as the rows have it, and as it is.
+            // The jump as interpolated between rows, and the exact one.
             let from = a - reach.cast_signed();
             let length = (b - a) as usize + 2 * reach + 1;
             let rows: Vec<f64> = (0..length.cast_signed())
@@ -110,8 +110,8 @@ impl Response {
     }
 }
 
-/// A series so many rows later, between rows on lines; before its beginning, its end where it is
-/// closed, else its first value.
+/// A series delayed by `shift` rows with linear interpolation. Before its start: its end if it is
+/// periodic, otherwise its first value.
 fn later(x: &[f64], shift: f64, closed: bool) -> Vec<f64> {
     let n = x.len();
     (0..n)
@@ -127,9 +127,9 @@ fn later(x: &[f64], shift: f64, closed: bool) -> Vec<f64> {
         .collect()
 }
 
-/// A series behind a pole with a time constant in rows.
+/// A series after a first-order lag with a time constant in rows.
 fn lagged(x: &[f64], lag: f64, closed: bool) -> Vec<f64> {
-    // Exact for a series that is a line between rows.
+    // Exact for a piecewise linear series.
     let ratio = 1.0 / lag;
     let kept = (-ratio).exp();
     let mean = (1.0 - kept) / ratio;
@@ -176,8 +176,8 @@ mod tests {
         Motion::new(model, t, [still.clone(), series(&rate), still], &vec![0.0; model.dof], true)
     }
 
-    /// Dry friction behind a lag, against small steps of the filter; a delay, against the torque
-    /// of an earlier moment.
+    /// Compares Coulomb friction after a lag with small filter steps, and a delay with the torque
+    /// at an earlier time.
     #[test]
     fn jumps_are_where_the_motor_turns_back() {
         let model = find("IRB1600-6/1.45").unwrap();

@@ -1,4 +1,4 @@
-//! Waves of the gear: teeth, wave generators, kinematic errors.
+//! Periodic torque of the gear: teeth, wave generators, kinematic errors.
 
 use crate::arm::robot::LawState;
 
@@ -8,7 +8,6 @@ use super::effect::{
 use super::scale::Scale;
 use super::waves::AMPLITUDE_AND_PHASE;
 
-/// Ripple.
 pub(super) const RIPPLE: Effect = Effect {
     id: "ripple",
     channel: Channel::Torque,
@@ -34,10 +33,10 @@ pub(super) const RIPPLE: Effect = Effect {
     form: Form::Law { dissipates: false, torque },
 };
 
-/// Multiples of the motor's turn that gears and motors have.
+/// Typical orders per motor turn of gears and motors.
 const OF_MOTOR: [f64; 4] = [1.0, 2.0, 4.0, 6.0];
 
-/// Orders that gears and motors have, as far as rows can show them.
+/// Typical orders of gears and motors that the sampling can resolve.
 fn orders(of: &Scale) -> Vec<f64> {
     let most = std::f64::consts::PI / (of.rate * of.step).max(1e-9);
     OF_MOTOR.map(|k| k * of.ratio).into_iter().filter(|order| (2.0..most).contains(order)).collect()

@@ -1,10 +1,9 @@
-//! Rotors and gears that are heavier or lighter than stated.
+//! Rotor and gear inertias that differ from the stated ones.
 
 use crate::arm::robot::Model;
 
 use super::effect::{Channel, Effect, Form, Scope, every, free, linear};
 
-/// Inertia of the rotor.
 pub(super) const ROTOR_INERTIA: Effect = Effect {
     id: "rotor_inertia",
     channel: Channel::Torque,

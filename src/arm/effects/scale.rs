@@ -1,37 +1,37 @@
-//! Typical sizes at a joint in a motion, from which effects take their priors.
+//! Typical magnitudes at a joint in a motion for the priors of effects.
 
 use super::motion::Motion;
 
-/// Friction of a joint over its torque where the robot states none.
+/// Default friction of a joint as a share of its torque.
 const FRICTION: f64 = 0.05;
-/// Mass that a flange may carry over that of all links.
+/// Typical flange load as a share of the mass of all links.
 const PAYLOAD: f64 = 0.03;
 
-/// Typical sizes at a joint in a motion.
+/// Typical magnitudes at a joint in a motion.
 #[derive(Clone, Copy, Debug)]
 pub struct Scale {
-    /// Coulomb friction, or what it may be \[Nm\].
+    /// Coulomb friction, known or typical \[Nm\].
     pub coulomb: f64,
-    /// Viscous friction, or what it may be \[Nm s/rad\].
+    /// Viscous friction, known or typical \[Nm s/rad\].
     pub viscous: f64,
-    /// Inertia that the motor sees: rotor \[kg m²\].
+    /// Reflected rotor inertia \[kg m²\].
     pub rotor: f64,
-    /// Root mean square and largest of the torque \[Nm\].
+    /// RMS and peak torque \[Nm\].
     pub torque: [f64; 2],
-    /// Largest rate \[rad/s\].
+    /// Largest speed \[rad/s\].
     pub rate: f64,
-    /// Gear ratio; 1 where it is not known.
+    /// Gear ratio; 1 if unknown.
     pub ratio: f64,
     /// Interval of the rows \[s\].
     pub step: f64,
-    /// Mass that the flange may carry \[kg\].
+    /// Typical flange load \[kg\].
     pub payload: f64,
-    /// Mass of the joint's link \[kg\], and its mean moment about the joint's origin \[kg m²\].
+    /// Mass of the link \[kg\] and its mean moment of inertia about the joint origin \[kg m²\].
     pub link: (f64, f64),
 }
 
 impl Motion<'_> {
-    /// Typical sizes at a joint.
+    /// Typical magnitudes at a joint.
     #[must_use]
     pub fn scale(&self, joint: usize) -> Scale {
         let model = self.model;

@@ -2,7 +2,6 @@
 
 use super::effect::{Channel, Effect, Form, Scope, bounded};
 
-/// Speed that is limited.
 pub(super) const SPEED_LIMIT: Effect = Effect {
     id: "speed_limit",
     channel: Channel::Motion,

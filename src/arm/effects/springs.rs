@@ -4,7 +4,7 @@ use crate::arm::robot::LawState;
 
 use super::effect::{Published, Values};
 
-/// Coordinates are the stiffness and the torque at 0; parameters stiffness and centre.
+/// Coordinates are stiffness and torque at 0; parameters are stiffness and centre.
 pub(super) const STIFFNESS_AND_CENTRE: Published = Published {
     parameters: |x| match x {
         [stiffness, at_zero, ..] if *stiffness != 0.0 => vec![*stiffness, -at_zero / stiffness],
@@ -16,7 +16,7 @@ pub(super) const STIFFNESS_AND_CENTRE: Published = Published {
     },
 };
 
-/// Torque \[Nm\] that holds against a spring.
+/// Torque against a spring \[Nm\].
 pub(super) fn spring(state: &LawState, [stiffness, at_zero, ..]: &Values) -> f64 {
     stiffness * state.q + at_zero
 }

@@ -1,10 +1,9 @@
-//! Friction that falls with speed from breakaway on.
+//! Friction that falls with speed from its breakaway value.
 
 use crate::arm::robot::LawState;
 
 use super::effect::{Channel, Effect, Form, Scope, Values, bounded, every, free, linear, shape};
 
-/// Stribeck friction.
 pub(super) const STRIBECK: Effect = Effect {
     id: "stribeck",
     channel: Channel::Torque,

@@ -1,4 +1,4 @@
-//! Torques that are logged later than the positions.
+//! Torques that are logged with a delay relative to positions.
 
 use super::effect::{
     Channel, Coordinate, Effect, Form, Role, Scope, bounded, every, shape, shaped,
@@ -6,7 +6,6 @@ use super::effect::{
 use super::motion::Motion;
 use super::response::Response;
 
-/// Delay.
 pub(super) const TIME_DELAY: Effect = Effect {
     id: "time_delay",
     channel: Channel::Torque,

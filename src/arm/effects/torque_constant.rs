@@ -1,8 +1,7 @@
-//! A torque constant or a gain of a current sensor that is not as stated.
+//! A torque constant or current sensor gain that differs from the stated one.
 
 use super::effect::{Channel, Effect, Form, Scope, bounded, every, linear};
 
-/// Torque constant.
 pub(super) const TORQUE_CONSTANT: Effect = Effect {
     id: "torque_constant",
     channel: Channel::Torque,

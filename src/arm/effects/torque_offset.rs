@@ -1,8 +1,7 @@
-//! A constant of amplifier or sensor, or another Coulomb friction forwards than backwards.
+//! An offset of amplifier or sensor, or Coulomb friction that differs between directions.
 
 use super::effect::{Channel, Effect, Form, Scope, every, free, linear};
 
-/// Offset of the torque.
 pub(super) const TORQUE_OFFSET: Effect = Effect {
     id: "torque_offset",
     channel: Channel::Torque,

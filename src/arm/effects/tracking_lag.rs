@@ -2,7 +2,6 @@
 
 use super::effect::{Channel, Effect, Form, Scope, free};
 
-/// Lag of the servos.
 pub(super) const TRACKING_LAG: Effect = Effect {
     id: "tracking_lag",
     channel: Channel::Motion,

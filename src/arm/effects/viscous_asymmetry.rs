@@ -1,10 +1,9 @@
-//! Viscous friction that is not the same both ways.
+//! Viscous friction that differs between directions.
 
 use crate::arm::robot::LawState;
 
 use super::effect::{Channel, Effect, Form, Scope, Values, every, free, linear};
 
-/// Asymmetry of viscous friction.
 pub(super) const VISCOUS_ASYMMETRY: Effect = Effect {
     id: "viscous_asymmetry",
     channel: Channel::Torque,

@@ -1,10 +1,9 @@
-//! Friction of a robot that is not warm yet.
+//! Friction of a cold robot.
 
 use crate::arm::robot::LawState;
 
 use super::effect::{Channel, Effect, Form, Scope, Values, bounded, every, free, linear, shape};
 
-/// Warming up.
 pub(super) const WARM_UP: Effect = Effect {
     id: "warm_up",
     channel: Channel::Torque,

@@ -1,9 +1,9 @@
-//! Amplitude and phase of a wave, and its cosine and sine part.
+//! Conversion between amplitude and phase and cosine and sine part of a wave.
 
 use super::effect::Published;
 
-/// The first two coordinates are the parts, the first two parameters amplitude and phase; what
-/// follows is the same in both.
+/// The first two coordinates are cosine and sine part, the first two parameters amplitude and
+/// phase; the others are equal.
 pub(super) const AMPLITUDE_AND_PHASE: Published = Published {
     parameters: |x| replaced(x, |a, b| [a.hypot(b), b.atan2(a)]),
     coordinates: |x| {

@@ -1,10 +1,9 @@
-//! A wrist whose gears are coupled more or less than stated.
+//! A wrist coupling that differs from the stated one.
 
 use crate::arm::robot::Model;
 
 use super::effect::{Channel, Coordinate, Effect, Form, Role, Scope, free, linear, shaped};
 
-/// Coupling of the wrist.
 pub(super) const WRIST_COUPLING: Effect = Effect {
     id: "wrist_coupling",
     channel: Channel::Torque,
@@ -19,7 +18,7 @@ pub(super) const WRIST_COUPLING: Effect = Effect {
         free("inertia", "kg m2", "change of the inertia of rotor 6, at the joint"),
     ],
     coordinates: &[
-        // Torques jump where the motor turns back, so that they have no tangent.
+        // Torques jump at reversals of the motor, so they have no derivative.
         Coordinate { role: Role::Choice(|_| TRIED.to_vec()), usual: shaped },
         linear(|of| 0.3 * of.coulomb),
         linear(|of| 0.3 * of.viscous),
@@ -33,7 +32,7 @@ pub(super) const WRIST_COUPLING: Effect = Effect {
     form: Form::Model(change),
 };
 
-/// Changes of the coupling that are tried first.
+/// Initially tried changes of the coupling.
 const TRIED: [f64; 8] = [-1.0, -0.75, -0.5, -0.25, 0.25, 0.5, 0.75, 1.0];
 
 fn change(model: &mut Model, _: usize, values: &[f64]) {

@@ -2,7 +2,6 @@
 
 use super::effect::{Channel, Effect, Form, Scope, bounded};
 
-/// Corners that are cut more or less.
 pub(super) const ZONE_BLENDING: Effect = Effect {
     id: "zone_blending",
     channel: Channel::Motion,

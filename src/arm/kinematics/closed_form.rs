@@ -1,5 +1,5 @@
-//! Inverse kinematics in closed form of an ortho-parallel arm with a spherical wrist: eight
-//! branches. Letters as in [`Opw`]; θ are OPW angles.
+//! Closed-form inverse kinematics of an ortho-parallel arm with a spherical wrist: eight branches.
+//! Symbols as in [`Opw`]; θ are OPW angles.
 
 use std::f64::consts::PI;
 
@@ -9,26 +9,26 @@ use crate::arm::robot::{Coupling, Model, Opw};
 
 use super::error::{IkError, Side};
 
-/// Lengths by which a pose at the edge of the reach may miss it \[m\]: rounding
-/// of targets that are written with few digits is left to the caller.
+/// Accepted excess of a pose over the reach \[m\]. Rounding of targets with few digits is left to
+/// the caller.
 const REACH_SLACK: f64 = 1e-9;
-/// |sin θ5| below which axes 4 and 6 count as one: where the arm is stretched as well, θ5 has
-/// half the digits.
+/// |sin θ5| below which axes 4 and 6 are collinear; with the arm stretched as well, θ5 has only
+/// half of the digits.
 const WRIST_SINGULAR: f64 = 1e-7;
 
-/// Distance from axis 1 below which a wrist centre lies on it \[m\].
+/// Distance from axis 1 below which a wrist centre is on it \[m\].
 const ON_AXIS: f64 = 1e-9;
 
-/// One branch of the inverse.
+/// One branch of the inverse kinematics.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Branch {
     /// Joint angles, each in (−π, π] \[rad\].
     pub(super) q: [f64; 6],
-    /// Wrist centre behind axis 1.
+    /// Whether the wrist centre is behind axis 1.
     pub(super) back: bool,
     /// Signed elbow angle \[rad\].
     pub(super) elbow: f64,
-    /// In a wrist singularity: what joints 4 and 6 must keep.
+    /// In a wrist singularity: the relation of joints 4 and 6.
     pub(super) locked: Option<Locked>,
 }
 
@@ -44,7 +44,7 @@ pub(super) fn is_finite(pose: &Isometry3<f64>) -> bool {
     numbers.into_iter().all(|number| number.is_finite())
 }
 
-/// The branches of an OPW arm; `q1` as of [`arms`].
+/// The branches of an OPW arm; `q1` as for [`arms`].
 pub(super) fn closed(
     model: &Model,
     opw: &Opw,
@@ -59,9 +59,9 @@ pub(super) fn closed(
     Ok(found)
 }
 
-/// Hands the branches to `take` that may be nearer to `q_ref` than the least distance that it has
-/// returned: the wrist is worked out only where the first three joints are not farther already.
-/// Distances are sums of squares, whole turns aside.
+/// Calls `take` with the branches that may be nearer to `q_ref` than the least distance it has
+/// returned; the wrist is solved only if the first three joints are not farther already. Distances
+/// are sums of squares modulo full turns.
 pub(super) fn near(
     model: &Model,
     opw: &Opw,
@@ -93,8 +93,8 @@ pub(super) fn near(
     Ok(())
 }
 
-/// The branches of the first three joints that reach the wrist centre of a pose. `q1` \[rad\] is the
-/// angle of joint 1 where the wrist centre lies on axis 1, so that any angle is a solution.
+/// The branches of the first three joints for the wrist centre of a pose. `q1` \[rad\] is the angle
+/// of joint 1 for a wrist centre on axis 1, where any angle is a solution.
 fn arms(
     opw: &Opw,
     pose: &Isometry3<f64>,
@@ -116,21 +116,21 @@ fn arms(
     }
 }
 
-/// The first three angles of one branch.
+/// First three angles of one branch.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Arm {
     /// θ1 to θ3 \[rad\].
     pub(super) theta: [f64; 3],
-    /// Wrist centre behind axis 1.
+    /// Whether the wrist centre is behind axis 1.
     back: bool,
     /// Signed elbow angle \[rad\].
     elbow: f64,
 }
 
-/// How a wrist centre is missed: distance \[m\] and side.
+/// Distance \[m\] and side of an unreachable wrist centre.
 type Miss = (f64, Side);
 
-/// Both elbows with axis 1 facing the wrist centre, then with it facing away; `q1` as of [`arms`].
+/// Both elbows with axis 1 facing the wrist centre, then facing away; `q1` as for [`arms`].
 pub(super) fn facings(opw: &Opw, centre: &Vector3<f64>, q1: f64) -> [Result<[Arm; 2], Miss>; 2] {
     let beyond_b = centre.xy().norm_squared() - opw.b * opw.b;
     if beyond_b < -REACH_SLACK * opw.b.abs() {
@@ -155,8 +155,8 @@ pub(super) fn facings(opw: &Opw, centre: &Vector3<f64>, q1: f64) -> [Result<[Arm
     })
 }
 
-/// θ2, θ3 and the elbow angle of both elbows for a wrist centre at (u, v) from
-/// axis 2, u forward and v up; else the distance to the reachable ring.
+/// θ2, θ3 and the elbow angle of both elbows for a wrist centre at (u, v) from axis 2, u forward
+/// and v up; otherwise the distance to the reachable ring.
 fn arm(opw: &Opw, u: f64, v: f64) -> Result<[[f64; 3]; 2], Miss> {
     let k = opw.a2.hypot(opw.c3);
     let psi3 = opw.a2.atan2(opw.c3);
@@ -175,7 +175,7 @@ fn arm(opw: &Opw, u: f64, v: f64) -> Result<[[f64; 3]; 2], Miss> {
     }))
 }
 
-/// Both wrists for the first three angles.
+/// Both wrist solutions for the first three angles.
 fn wrist(
     model: &Model,
     opw: &Opw,
@@ -214,7 +214,7 @@ pub(super) fn forearm([theta1, theta2, theta3]: [f64; 3]) -> Rotation3<f64> {
         * Rotation3::from_axis_angle(&Vector3::y_axis(), theta2 + theta3)
 }
 
-/// The joint angles of OPW angles, each in (−π, π] \[rad\].
+/// The joint angles from OPW angles, each in (−π, π] \[rad\].
 pub(super) fn to_joints(model: &Model, opw: &Opw, theta: [f64; 6]) -> [f64; 6] {
     let mut q = theta;
     for (i, angle) in q.iter_mut().enumerate() {
@@ -226,7 +226,7 @@ pub(super) fn to_joints(model: &Model, opw: &Opw, theta: [f64; 6]) -> [f64; 6] {
     q.map(wrap)
 }
 
-/// The angle in (−π, π] \[rad\].
+/// The equivalent angle in (−π, π] \[rad\].
 pub(super) fn wrap(angle: f64) -> f64 {
     let turned = angle - 2.0 * PI * (angle / (2.0 * PI)).round();
     if turned <= -PI { turned + 2.0 * PI } else { turned }

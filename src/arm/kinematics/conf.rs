@@ -1,8 +1,8 @@
-//! Configurations: which of the solutions of a pose is meant.
+//! Configurations, which select one of the solutions of a pose.
 //!
-//! `cf1`, `cf4`, `cf6` are the quarter turns of axes 1, 4, 6 (0: 0 to 90°, −1:
-//! −90° to 0, …). `cfx` is a bit pattern: 4 where the wrist centre is behind
-//! axis 1, 2 where it is behind the lower arm, 1 where axis 5 is negative.
+//! `cf1`, `cf4`, `cf6` are the quarter turns of axes 1, 4, 6 (0: 0 to 90°, −1: −90° to 0, …). `cfx`
+//! is a bit pattern: 4 for a wrist centre behind axis 1, 2 for one behind the lower arm, 1 for a
+//! negative axis 5.
 
 use std::f64::consts::FRAC_PI_2;
 use std::fmt;
@@ -32,8 +32,7 @@ impl fmt::Display for Conf {
     }
 }
 
-/// The configuration of the joint angles `q` \[rad\]. For parallelogram robots `cfx`
-/// is 0.
+/// The configuration of the joint angles `q` \[rad\]; `cfx` is 0 for parallelogram robots.
 #[must_use]
 pub fn conf_of(model: &Model, q: &[f64; 6]) -> Conf {
     let cfx = match model.kinematics.coupling {
@@ -43,16 +42,16 @@ pub fn conf_of(model: &Model, q: &[f64; 6]) -> Conf {
     Conf { cf1: quarter(q[0]), cf4: quarter(q[3]), cf6: quarter(q[5]), cfx }
 }
 
-/// The quarter turn that an angle \[rad\] lies in.
+/// The quarter turn of an angle \[rad\].
 fn quarter(angle: f64) -> i32 {
     (angle / FRAC_PI_2).floor() as i32
 }
 
-/// Where the wrist centre lies in the plane of the arm.
+/// Position of the wrist centre in the plane of the arm.
 pub(super) struct Shape {
-    /// Its distance in front of axis 1 \[m\].
+    /// Distance in front of axis 1 \[m\].
     pub(super) reach: f64,
-    /// From the upper arm to the line from elbow to wrist centre, about axis 3 \[rad\].
+    /// Angle about axis 3 from the upper arm to the line from elbow to wrist centre \[rad\].
     pub(super) elbow: f64,
 }
 
@@ -62,7 +61,7 @@ impl Shape {
         let geometry = &model.kinematics;
         let offset = geometry.offset_wrist.as_ref();
         let arm = geometry.opw.as_ref().or(offset.map(|offset| &offset.arm));
-        // Where the wrist axes do not meet, axes 4 and 5 do, or axis 5 stands for them.
+        // If the wrist axes do not meet: the intersection of axes 4 and 5, otherwise axis 5.
         let along = offset
             .map_or(0.0, |offset| offset.crossing.translation.vector.dot(&geometry.joints[4].axis));
         let wrist = match &geometry.opw {

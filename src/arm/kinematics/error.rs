@@ -1,10 +1,10 @@
-//! Why a pose has no joint angles.
+//! Reasons why a pose has no joint angles.
 
 use thiserror::Error;
 
 use super::conf::Conf;
 
-/// Degrees from which on angles are shown with an exponent.
+/// Angles from this size on have an exponent in messages \[degrees\].
 const HUGE: f64 = 1e9;
 
 fn degrees(angle: f64) -> String {
@@ -27,7 +27,7 @@ pub struct LimitViolation {
     pub range: [f64; 2],
 }
 
-/// Why the inverse kinematics has no answer.
+/// Reason why the inverse kinematics has no solution.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum IkError {
     /// The arm is too short or too long for the pose.
@@ -35,13 +35,13 @@ pub enum IkError {
     Unreachable {
         /// Distance of the wrist centre from the reachable set \[m\].
         distance: f64,
-        /// On which side.
+        /// Its side.
         side: Side,
     },
-    /// The pose is not one.
+    /// The pose is not finite.
     #[error("the pose has a coordinate that is not a finite number; correct the target")]
     NotFinite,
-    /// The pose can only be had outside a joint's range.
+    /// All solutions of the pose are outside a joint range.
     #[error(transparent)]
     OutsideLimits(#[from] LimitViolation),
     /// No solution has the configuration.
@@ -51,18 +51,18 @@ pub enum IkError {
         list(found)
     )]
     ConfigurationNotFound {
-        /// The configuration asked for.
+        /// The required configuration.
         asked: Conf,
-        /// Those that the pose has, inside the joints' ranges.
+        /// The configurations of the pose within the joint ranges.
         found: Vec<Conf>,
     },
-    /// The search found nothing.
+    /// The numerical search found no solution.
     #[error("no joint angles of {robot} have the pose: it is out of reach, or nearly so")]
     NotFound {
         /// The robot.
         robot: String,
     },
-    /// The robot has fewer or more joints than a pose has coordinates.
+    /// The robot does not have six joints.
     #[error("{robot} has not six joints, so poses have no joint angles; give jointtargets")]
     NoInverse {
         /// The robot.
@@ -73,9 +73,9 @@ pub enum IkError {
 /// Side of the reachable set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// Too far away.
+    /// Too far.
     Beyond,
-    /// Too near.
+    /// Too close.
     Inside,
 }
 

@@ -4,21 +4,20 @@ use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vect
 
 use crate::arm::robot::{MAX_DOF, Model, Rotations};
 
-/// Pose of tool0 in the base frame at the joint angles `q` \[rad\], one for each
-/// joint (a missing one is 0).
+/// Pose of tool0 in the base frame at the joint angles `q` \[rad\], one per joint (default 0).
 #[must_use]
 pub fn fk(model: &Model, q: &[f64]) -> Isometry3<f64> {
     let frames = Frames::at(model, q);
     frames.flange(model)
 }
 
-/// Every joint's frame in the base frame.
+/// All joint frames in the base frame.
 pub(super) struct Frames {
     /// Origins \[m\].
     pub(super) origin: [Vector3<f64>; MAX_DOF],
     /// Axes of rotation, unit vectors.
     pub(super) axis: [Vector3<f64>; MAX_DOF],
-    /// Rotation of the last joint's frame.
+    /// Rotation of the last joint frame.
     last: Matrix3<f64>,
 }
 
@@ -27,7 +26,7 @@ impl Frames {
         Frames::from_rotations(model, &model.kinematics.rotations(q))
     }
 
-    /// With the rotation of each joint's frame in its parent's.
+    /// From the rotation of each joint frame in its parent frame.
     pub(super) fn from_rotations(model: &Model, rotations: &Rotations) -> Frames {
         let mut origin = [Vector3::zeros(); MAX_DOF];
         let mut axis = [Vector3::zeros(); MAX_DOF];

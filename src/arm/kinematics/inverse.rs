@@ -1,4 +1,4 @@
-//! All branches of the inverse kinematics, in closed form or searched.
+//! All branches of the inverse kinematics, in closed form or numerically.
 
 use nalgebra::Isometry3;
 
@@ -9,19 +9,18 @@ use super::conf::Shape;
 use super::error::IkError;
 use super::{numeric, offset_wrist};
 
-/// All solutions of the pose, each angle in (−π, π]; position limits are not looked
-/// at. Of an OPW arm at most eight, where joint 4 is at its zero in a wrist
-/// singularity; of another arm at most sixteen, which are searched: one next to a
-/// singularity may be missed.
+/// All solutions of the pose, each angle in (−π, π], without regard to position limits. An OPW arm
+/// has at most eight, with joint 4 at zero in a wrist singularity; another arm at most sixteen,
+/// found numerically: one near a singularity may be missed.
 ///
 /// # Errors
-/// The pose is out of reach or not finite, or the robot has not six joints.
+/// The pose is out of reach or not finite, or the robot does not have six joints.
 pub fn ik_all(model: &Model, pose: &Isometry3<f64>) -> Result<Vec<[f64; 6]>, IkError> {
     Ok(branches(model, pose, 0.0)?.iter().map(|branch| branch.q).collect())
 }
 
-/// The branches behind [`ik_all`]; never empty. `q1` \[rad\] is the angle of joint 1 where any
-/// will do: with the wrist centre on its axis.
+/// The branches of [`ik_all`]; never empty. `q1` \[rad\] is the angle of joint 1 for a wrist centre
+/// on its axis, where any angle is a solution.
 pub(super) fn branches(
     model: &Model,
     pose: &Isometry3<f64>,

@@ -6,9 +6,8 @@ use crate::arm::robot::{Coupling, Model, Rotations};
 
 use super::fk::Frames;
 
-/// Velocity of the tool centre point per joint velocity: 6 × N, linear \[m/rad\]
-/// over angular \[1\], both in the base frame, at the origin of `tool` (pose in
-/// tool0). `N` is the robot's number of joints.
+/// TCP velocity per joint velocity: 6 × N, linear \[m/rad\] over angular \[1\], both in the base
+/// frame, at the origin of `tool` (pose in tool0). `N` is the number of joints.
 #[must_use]
 pub fn jacobian<const N: usize>(
     model: &Model,
@@ -46,17 +45,17 @@ pub(super) fn twist(
     Vector6::new(moving.x, moving.y, moving.z, turning.x, turning.y, turning.z)
 }
 
-/// A point that a Jacobian is taken at.
+/// Reference point of a Jacobian.
 #[derive(Clone, Copy)]
 pub(super) enum Tip<'a> {
     /// The origin of a frame in tool0.
     Held(&'a Isometry3<f64>),
-    /// A point of the base frame \[m\], which the robot moves past.
+    /// A fixed point in the base frame \[m\].
     Fixed(Vector3<f64>),
 }
 
-/// Change of [`jacobian`] along the motion with joint velocities `qd`: J' with x'' = J q'' + J' q'.
-/// `qd` may be per second or per unit of a path, J' is then per the same.
+/// Derivative J' of [`jacobian`] along the motion with joint velocities `qd`, such that
+/// x'' = J q'' + J' q'. `qd` is per second or per unit of a path, as is J'.
 pub(super) fn jacobian_dot<const N: usize>(
     model: &Model,
     q: &[f64; N],
@@ -71,7 +70,7 @@ pub(super) fn jacobian_dot<const N: usize>(
         Tip::Fixed(point) => point,
     };
 
-    // Velocities of the joints' origins and of their axes.
+    // Velocities of the joint origins and axes.
     let mut turning = Vector3::zeros();
     let mut moving = Vector3::zeros();
     let mut last = Vector3::zeros();
@@ -109,8 +108,7 @@ fn set_column<const N: usize>(
     j.fixed_view_mut::<3, 1>(3, column).copy_from(&angular);
 }
 
-/// From serial to reported joints: q3 turns joint 3, q2 turns joints 2 and 3
-/// against each other.
+/// From serial to reported joints: q3 moves joint 3, q2 moves joints 2 and 3 oppositely.
 fn couple<const N: usize>(model: &Model, j: &mut SMatrix<f64, 6, N>) {
     if model.kinematics.coupling == Coupling::Parallelogram && N > 2 {
         let forearm = j.column(2).into_owned();

@@ -1,17 +1,17 @@
-//! Position limits, with those that hold under a condition.
+//! Position limits, including conditional ones.
 
 use crate::arm::robot::Model;
 
 use super::error::LimitViolation;
 
-/// By how much rounding may carry an angle over its limit \[rad\]: where the arm is stretched,
-/// its angles have half the digits.
+/// Accepted excess of an angle over its limit \[rad\]: angles of a stretched arm have only half of
+/// the digits.
 const ROUNDING: f64 = 1e-7;
 
-/// Whether every joint angle of `q` \[rad\] is inside its range.
+/// Checks that all joint angles `q` \[rad\] are within their ranges.
 ///
 /// # Errors
-/// The first joint that is not.
+/// The first joint outside its range.
 pub fn limits_ok(model: &Model, q: &[f64]) -> Result<(), LimitViolation> {
     for (joint, &value) in q.iter().enumerate() {
         let range = model.limits.position_at(q, joint);

@@ -1,8 +1,8 @@
-//! Where the robot is: forward and inverse kinematics, configurations,
-//! Jacobians, singularities, position limits, room around the arm. Knows no RAPID.
+//! Kinematics, independent of RAPID: forward and inverse kinematics, configurations, Jacobians,
+//! singularities, position limits, clearance of the arm.
 //!
-//! Poses are those of tool0 in the robot's base frame: base z up along axis 1,
-//! x forward; tool0 z out of the flange, x down when all joints are at zero.
+//! Poses are those of tool0 in the base frame: base z up along axis 1, x forward; tool0 z out of
+//! the flange, x down at joint angles 0.
 
 mod clearance;
 mod closed_form;

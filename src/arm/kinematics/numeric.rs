@@ -1,10 +1,9 @@
-//! Inverse kinematics of six joints without a closed form, such as an arm whose
-//! wrist axes do not meet: damped least squares from many starts.
+//! Inverse kinematics of six joints without a closed form, such as an arm without a spherical
+//! wrist: damped least squares from many starts.
 //!
-//! The step is Levenberg's and Marquardt's in the form of Y. Nakamura, H. Hanafusa,
-//! "Inverse kinematic solutions with singularity robustness for robot manipulator
-//! control", J. Dyn. Sys., Meas., Control 108 (1986). Finding every branch is likely,
-//! not certain.
+//! Levenberg–Marquardt steps in the form of Y. Nakamura, H. Hanafusa, "Inverse kinematic solutions
+//! with singularity robustness for robot manipulator control", J. Dyn. Sys., Meas., Control 108
+//! (1986). All branches are found with high probability, but not certainly.
 
 use std::f64::consts::{PI, TAU};
 
@@ -17,18 +16,18 @@ use super::fk::fk;
 use super::jacobian::jacobian;
 use super::radical_inverse::radical_inverse;
 
-/// Starts of the search for all solutions.
+/// Number of starts in the search for all solutions.
 const STARTS: u32 = 160;
-/// Steps from one start.
+/// Largest number of steps per start.
 const STEPS: usize = 80;
-/// Error at which a pose is met \[m\] and \[rad\].
+/// Pose error at convergence \[m\] and \[rad\].
 const MET: f64 = 1e-11;
-/// Error that is good enough where steps bring no more: singular poses.
+/// Accepted pose error after stagnation, at singular poses.
 const NEARLY_MET: f64 = 1e-9;
-/// Difference of angles below which two solutions are one \[rad\].
+/// Angle difference below which two solutions are equal \[rad\].
 const SAME: f64 = 1e-5;
 
-/// The solution of the pose to which the steps from `start` converge, if they do.
+/// The solution of the pose reached from `start`, if the steps converge.
 pub(super) fn refine(model: &Model, pose: &Isometry3<f64>, start: &[f64; 6]) -> Option<[f64; 6]> {
     let mut q = *start;
     let mut error = miss(model, pose, &q);
@@ -55,7 +54,7 @@ pub(super) fn refine(model: &Model, pose: &Isometry3<f64>, start: &[f64; 6]) -> 
     (error.norm() < NEARLY_MET).then_some(q)
 }
 
-/// The solutions of the pose that were found, each angle in (−π, π].
+/// The found solutions of the pose, each angle in (−π, π].
 pub(super) fn solutions(model: &Model, pose: &Isometry3<f64>) -> Vec<[f64; 6]> {
     const BASES: [u32; 6] = [2, 3, 5, 7, 11, 13];
     let mut found: Vec<[f64; 6]> = Vec::new();
@@ -68,7 +67,7 @@ pub(super) fn solutions(model: &Model, pose: &Isometry3<f64>) -> Vec<[f64; 6]> {
     found
 }
 
-/// Adds a solution that is not there yet.
+/// Adds a new solution.
 pub(super) fn add(found: &mut Vec<[f64; 6]>, q: &[f64; 6]) {
     let same = |known: &[f64; 6]| {
         known.iter().zip(q).all(|(a, b)| {

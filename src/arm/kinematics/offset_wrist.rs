@@ -1,9 +1,9 @@
-//! All branches of the inverse of an arm whose axis 6 passes the crossing of axes 4 and 5
-//! at a distance, such as an ABB CRB 15000.
+//! Inverse kinematics of an arm whose axis 6 misses the intersection of axes 4 and 5, such as an
+//! ABB CRB 15000.
 //!
-//! With q6 given, the pose of link 5 is known, hence the crossing, hence four arms in
-//! closed form. Those are solutions whose axis 4 is at a right angle to axis 5: the zeros
-//! of a function of q6, which is searched over a turn.
+//! A given q6 determines the pose of link 5, hence the intersection, hence four arms in closed
+//! form. Solutions are those with axis 4 at a right angle to axis 5: the zeros of a function of q6,
+//! which are searched over a full turn.
 
 use std::f64::consts::TAU;
 
@@ -14,14 +14,14 @@ use crate::arm::robot::{Joint, Model, OffsetWrist};
 use super::closed_form::{Arm, facings, forearm, to_joints};
 use super::numeric::{add, refine};
 
-/// Places of q6 over a turn at which the arms are computed.
+/// Samples of q6 over a full turn.
 const PLACES: u32 = 720;
-/// Halvings of an interval that holds a zero or an end of the reach.
+/// Bisection steps to a zero or to an end of the reach.
 const HALVINGS: u32 = 40;
-/// Arms with one wrist centre: two facings of axis 1 with two elbows each.
+/// Arms per wrist centre: two facings of axis 1 with two elbows each.
 const ARMS: usize = 4;
 
-/// The solutions of the pose that were found, each angle in (−π, π].
+/// The found solutions of the pose, each angle in (−π, π].
 pub(super) fn solutions(
     model: &Model,
     wrist: &OffsetWrist,
@@ -55,14 +55,14 @@ pub(super) fn solutions(
                 _ => {}
             }
         }
-        // A zero that is touched, or two in one interval.
+        // A double zero, or two zeros in one interval.
         for three in places.windows(3) {
             if let [Some(a), Some(b), Some(c)] = [cos(&three[0]), cos(&three[1]), cos(&three[2])]
                 && a * b > 0.0
                 && b * c > 0.0
                 && b.abs() <= a.abs().min(c.abs())
             {
-                // Past the least there are none or two.
+                // Beyond the minimum there are no zeros or two.
                 let least = search.least(&three[0], &three[2], which, b.signum());
                 try_at(search.zero(&three[0], &least, which), which);
                 try_at(search.zero(&least, &three[2], which), which);
@@ -72,7 +72,7 @@ pub(super) fn solutions(
     found
 }
 
-/// The arms at one angle of axis 6, those that reach.
+/// The reachable arms at one angle of axis 6.
 struct Place {
     q6: f64,
     /// Each with the cosine between axes 4 and 5.
@@ -119,7 +119,7 @@ impl<'a> Search<'a> {
         Place { q6, arms }
     }
 
-    /// The joint angles of an arm, whose axes 4 and 5 are at a right angle, nearly.
+    /// The joint angles of an arm with axes 4 and 5 nearly at a right angle.
     fn joints(&self, arm: &Arm, q6: f64) -> [f64; 6] {
         let opw = &self.wrist.arm;
         let link = self.link_5(q6);
@@ -136,7 +136,7 @@ impl<'a> Search<'a> {
         q
     }
 
-    /// Where the cosine is 0 between two places, else the better end.
+    /// The zero of the cosine between two places, otherwise the better end.
     fn zero(&self, a: &Place, b: &Place, which: usize) -> f64 {
         let cos = |q6: f64| self.place(q6).arms[which].map_or(f64::NAN, |(_, cos)| cos);
         let (mut from, mut to) = (a.q6, b.q6);
@@ -170,7 +170,7 @@ impl<'a> Search<'a> {
         self.place(from)
     }
 
-    /// Where the cosine times `sense` is least between two places, by thirds.
+    /// The minimum of the cosine times `sense` between two places, by ternary search.
     fn least(&self, a: &Place, b: &Place, which: usize, sense: f64) -> Place {
         let size =
             |q6: f64| self.place(q6).arms[which].map_or(f64::INFINITY, |(_, cos)| sense * cos);

@@ -1,7 +1,7 @@
-//! Points that fill a cube evenly, for searches and checks over all poses.
+//! Evenly distributed points in a cube, for searches and checks over all poses.
 
-/// The `n`-th number of van der Corput's sequence to the base, between 0 and 1: such
-/// sequences to several bases fill a cube evenly (J. H. Halton, 1960).
+/// Number `n` of the van der Corput sequence to the base, between 0 and 1; sequences to several
+/// bases fill a cube evenly (J. H. Halton, 1960).
 #[must_use]
 pub fn radical_inverse(mut n: u32, base: u32) -> f64 {
     let (mut sum, mut share) = (0.0, 1.0);

@@ -1,4 +1,4 @@
-//! One solution out of the branches: by configuration, or the nearest.
+//! Selection of one branch: by configuration or by distance.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
@@ -13,21 +13,20 @@ use super::inverse::branches;
 use super::limits::limits_ok;
 use super::numeric::refine;
 
-/// By how much an angle may lie outside the quarter turn that the
-/// configuration names \[rad\]: targets and configurations are rounded apart, and
-/// angles at zero are reported on either side.
+/// Accepted distance of an angle from its quarter turn \[rad\]: targets and configurations are
+/// rounded separately, and angles at zero are reported on either side.
 const EDGE: f64 = 1e-3;
-/// Difference of the angles below which a searched solution is taken for the nearest
-/// \[rad\]: a step on a path is far smaller, other branches lie beyond.
+/// Angle differences below which a numerical solution is the nearest one \[rad\]: a step on a path
+/// is far smaller, the distance of other branches larger.
 const NEAR: f64 = 0.3;
 const TURN: f64 = 2.0 * PI;
 
-/// The solution of the pose that has the configuration, inside the position
-/// limits. An angle at the edge of a quarter turn belongs to both neighbours.
+/// The solution of the pose with this configuration within the position limits. An angle at the
+/// edge of a quarter turn belongs to both neighbours.
 ///
 /// # Errors
-/// The pose is out of reach; its solution with this configuration breaks a
-/// position limit; no solution has the configuration.
+/// The pose is out of reach; its solution with this configuration exceeds a position limit; no
+/// solution has the configuration.
 pub fn ik_conf(model: &Model, pose: &Isometry3<f64>, conf: Conf) -> Result<[f64; 6], IkError> {
     let low1 = f64::from(conf.cf1) * FRAC_PI_2;
     let branches = branches(model, pose, 0.0_f64.clamp(low1, low1 + FRAC_PI_2))?;
@@ -56,13 +55,12 @@ pub fn ik_conf(model: &Model, pose: &Isometry3<f64>, conf: Conf) -> Result<[f64;
     }
 }
 
-/// The solution nearest to `q_ref` (least sum of squared differences), whole
-/// turns included; in a wrist singularity joint 4 stays where it is, and joint 1 with the
-/// wrist centre on its axis. It follows a
-/// path without jumps when `q_ref` is the solution a small step before.
+/// The solution nearest to `q_ref` (least sum of squared differences), including full turns; joint
+/// 4 is kept in a wrist singularity, and joint 1 with the wrist centre on its axis. It follows a
+/// path without jumps if `q_ref` is the previous solution at a small step.
 ///
 /// # Errors
-/// The pose is out of reach; the nearest solution breaks a position limit.
+/// The pose is out of reach; the nearest solution exceeds a position limit.
 pub fn ik_near(
     model: &Model,
     pose: &Isometry3<f64>,
@@ -105,7 +103,7 @@ pub fn ik_near(
     Ok(best.1)
 }
 
-/// The branch turned into the configuration, and by how much it misses it.
+/// The branch rotated by full turns into the configuration, and its distance from it.
 fn with_conf(model: &Model, branch: &Branch, conf: Conf) -> Option<(f64, [f64; 6])> {
     let mut excess = 0.0;
     if model.kinematics.coupling == Coupling::None {
@@ -130,12 +128,12 @@ fn with_conf(model: &Model, branch: &Branch, conf: Conf) -> Option<(f64, [f64; 6
     Some((excess, q))
 }
 
-/// In a wrist singularity any q4 solves the pose: the one of least size in its quarter turn
-/// with which q6 is in its own, if there is one.
+/// In a wrist singularity any q4 solves the pose: the smallest one in its quarter turn with q6 in
+/// its own quarter turn, if possible.
 fn locked_fourth(locked: &Locked, conf: Conf) -> f64 {
     let [low, low6] = [conf.cf4, conf.cf6].map(|quarter| f64::from(quarter) * FRAC_PI_2);
     let high = low + FRAC_PI_2;
-    // The middle of the range of q4 that brings q6 into its quarter turn, less whole turns.
+    // The middle of the range of q4 with q6 in its quarter turn, modulo full turns.
     let middle = (locked.offset - low6 - FRAC_PI_4) / locked.slope;
     let turns = ((low + FRAC_PI_4 - middle) / TURN).round();
     let middle = middle + TURN * turns;
@@ -143,13 +141,12 @@ fn locked_fourth(locked: &Locked, conf: Conf) -> f64 {
     if from <= to { 0.0_f64.clamp(from, to) } else { 0.0_f64.clamp(low, high) }
 }
 
-/// 0 where both bits agree, the distance to the border of the two where that is
-/// small, else nothing.
+/// 0 for equal bits, the distance to the border if it is small, otherwise `None`.
 fn misses(asked: bool, found: bool, to_border: f64) -> Option<f64> {
     if asked == found { Some(0.0) } else { (to_border <= EDGE).then_some(to_border) }
 }
 
-/// Each joint turned by whole turns into its range, where one turn does it.
+/// Each joint shifted by at most one full turn into its range.
 fn into_limits(model: &Model, mut q: [f64; 6]) -> [f64; 6] {
     for joint in 0..q.len() {
         let [low, high] = model.limits.position_at(&q, joint);

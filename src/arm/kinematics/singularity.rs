@@ -1,19 +1,17 @@
-//! How near the arm is to losing a direction of motion.
+//! Distances of the arm from its singularities.
 
 use crate::arm::robot::Model;
 
 use super::conf::Shape;
 
-/// Distances from the three singularities of an arm with a spherical wrist;
-/// each is 0 in its singularity.
+/// Distances from the three singularities of an arm with a spherical wrist; 0 in the singularity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Singularity {
-    /// |sin q5|: axes 4 and 6 in line.
+    /// |sin q5|: axes 4 and 6 collinear.
     pub wrist: f64,
-    /// |sin| of the elbow angle: upper arm, elbow and wrist centre in line.
+    /// |sin| of the elbow angle: upper arm, elbow and wrist centre collinear.
     pub elbow: f64,
-    /// Distance of the wrist centre from the plane through axis 1 that is
-    /// parallel to axis 2 \[m\].
+    /// Distance of the wrist centre from the plane through axis 1 parallel to axis 2 \[m\].
     pub shoulder: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The tool centre point (TCP), on the robot or beside it.
+//! The tool centre point (TCP) of a held or stationary tool.
 
 use nalgebra::{Isometry3, Matrix3, SMatrix, SVector, Vector6};
 
@@ -7,9 +7,8 @@ use crate::arm::robot::{Model, Rotations};
 use super::fk::fk;
 use super::jacobian::{Tip, jacobian, jacobian_dot, twist};
 
-/// Where the TCP is fixed. Its pose is seen from the other side: from the base frame where
-/// the robot holds the tool, from tool0 where the tool stands still and the robot holds the
-/// work. So is its velocity.
+/// The TCP. Its pose and velocity are relative to the base frame if the robot holds the tool, and
+/// relative to tool0 if the tool is stationary and the robot holds the work object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tcp {
     /// The robot holds the tool: the TCP in tool0.
@@ -19,7 +18,7 @@ pub enum Tcp {
 }
 
 impl Tcp {
-    /// The pose of the TCP where tool0 has the pose `flange` in the base frame.
+    /// The pose of the TCP if tool0 has the pose `flange` in the base frame.
     #[must_use]
     pub fn pose(&self, flange: &Isometry3<f64>) -> Isometry3<f64> {
         match self {
@@ -28,7 +27,7 @@ impl Tcp {
         }
     }
 
-    /// The pose of tool0 in the base frame where the TCP has the pose `tcp`.
+    /// The pose of tool0 in the base frame if the TCP has the pose `tcp`.
     #[must_use]
     pub fn flange(&self, tcp: &Isometry3<f64>) -> Isometry3<f64> {
         match self {
@@ -37,8 +36,7 @@ impl Tcp {
         }
     }
 
-    /// Velocity of the TCP per joint velocity at `q` \[rad\]: 6 × N, linear \[m/rad\] over
-    /// angular \[1\].
+    /// TCP velocity per joint velocity at `q` \[rad\]: 6 × N, linear \[m/rad\] over angular \[1\].
     #[must_use]
     pub fn jacobian<const N: usize>(&self, model: &Model, q: &[f64; N]) -> SMatrix<f64, 6, N> {
         match self {
@@ -51,8 +49,8 @@ impl Tcp {
         }
     }
 
-    /// Velocity of the TCP where the joints at `q` \[rad\] have the rates `qd`, per second or per
-    /// unit of a path: linear \[m\] over angular \[rad\].
+    /// TCP velocity at `q` \[rad\] with joint velocities `qd`, per second or per unit of a path:
+    /// linear \[m\] over angular \[rad\].
     #[must_use]
     pub fn twist<const N: usize>(
         &self,
@@ -63,7 +61,7 @@ impl Tcp {
         self.twist_of(model, q, &model.kinematics.rotations(q), qd)
     }
 
-    /// The same with the rotations of the joints at `q`, where they are known.
+    /// The same with known joint rotations at `q`.
     #[must_use]
     pub fn twist_of<const N: usize>(
         &self,
@@ -80,7 +78,7 @@ impl Tcp {
         }
     }
 
-    /// Change of [`jacobian`](Self::jacobian) along the motion with joint velocities `qd`.
+    /// Derivative of [`jacobian`](Self::jacobian) along the motion with joint velocities `qd`.
     #[must_use]
     pub fn jacobian_dot<const N: usize>(
         &self,
@@ -91,8 +89,7 @@ impl Tcp {
         match self {
             Tcp::Held(tool) => jacobian_dot(model, q, qd, Tip::Held(tool)),
             Tcp::Stationary(tool) => {
-                // J = −Rᵀ J_b, where J_b is that of the point of the work at the tool, and
-                // R' = ω × R.
+                // J = −Rᵀ J_b with J_b for the point of the work object at the tool; R' = ω × R.
                 let flange = fk(model, q);
                 let into = flange.rotation.inverse().to_rotation_matrix().into_inner();
                 let own = jacobian(model, q, &(flange.inverse() * tool));
@@ -104,7 +101,7 @@ impl Tcp {
     }
 }
 
-/// Both halves of each column turned.
+/// Rotates both halves of each column.
 fn turned<const N: usize>(by: &Matrix3<f64>, matrix: &SMatrix<f64, 6, N>) -> SMatrix<f64, 6, N> {
     let mut turned = SMatrix::<f64, 6, N>::zeros();
     for half in [0, 3] {

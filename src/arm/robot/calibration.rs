@@ -5,18 +5,18 @@ use super::fields::{Accepts, Fields};
 
 /// Largest number of robots of a calibration.
 const MOST: f64 = 4096.0;
-/// Largest size of a latent number, which is standard normal.
+/// Largest absolute value of a latent variable, which is standard normal.
 const FARTHEST: f64 = 20.0;
 
-/// Draws of the robot that fit the measured log.
+/// Draws of the robot that fit the measured data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibration {
     /// Number of draws.
     pub robots: usize,
-    /// Name of each latent number, and its difference from the model in each draw, in standard
-    /// deviations of the estimate.
+    /// Name of each latent variable and its value in each draw, in standard deviations of the
+    /// estimate relative to the model.
     pub draws: Vec<(String, Vec<f64>)>,
-    /// Where the table stands.
+    /// Position of the table.
     pub place: String,
 }
 

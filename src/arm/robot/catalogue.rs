@@ -81,7 +81,7 @@ const ROBOTS: [(&str, &str); 73] = [
     ("IRB7600-500/2.55", include_str!("catalogue/irb7600_500_255.toml")),
 ];
 
-/// Types of which ranges are known, but no lengths.
+/// Types with known ranges but unpublished lengths.
 const UNPUBLISHED: [&str; 2] = ["6660", "8700"];
 
 /// The full names of the catalogue, sorted.
@@ -89,7 +89,7 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     ROBOTS.iter().map(|(name, _)| *name)
 }
 
-/// The document of the robot that `name` means.
+/// The document of the robot with this name.
 pub(super) fn document(name: &str) -> Result<Node, RobotError> {
     let asked = Name::parse(name);
     let fits: Vec<_> = ROBOTS
@@ -117,7 +117,7 @@ pub(super) fn document(name: &str) -> Result<Node, RobotError> {
 
 /// The nearest robot.
 fn suggestion(name: &str, asked: &Name) -> Option<&'static str> {
-    // A mistyped type first: then the nearest figures of the nearest type.
+    // First the nearest type, then the nearest numbers of this type.
     let kind = nearest_kind(asked, names().map(Name::parse))?;
     let written = [name.to_owned(), asked.written(), asked.reversed()];
     let of_kind: Vec<&str> = names().filter(|full| Name::parse(full).kind() == kind).collect();

@@ -1,4 +1,4 @@
-//! What is known of the controller's motion planner.
+//! Known constants of the motion planner.
 
 use super::error::RobotError;
 use super::fields::{Accepts, Fields};
@@ -8,21 +8,19 @@ use super::provenance::Origin;
 const PLANNER_TIME: Accepts =
     Accepts::Between(0.0, 10.0, "0 or more and at most 10, in s (not milliseconds)");
 
-/// Figures of the motion planner; `None` where no source gives them.
+/// Constants of the motion planner; `None` without a source.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Controller {
-    /// Friction that the controller compensates at each motor \[Nm\]; motor side.
+    /// Compensated friction of each motor \[Nm, motor side\].
     pub friction_level: Option<Vec<f64>>,
-    /// Time in which the acceleration rises from 0 to its largest: the joints follow the average
-    /// of the planned motion over this time \[s\].
+    /// Rise time of the acceleration: window of the moving average of the planned motion \[s\].
     pub ramp_s: Option<f64>,
-    /// Share of that average that lies in the middle half of the time, besides what is spread all
-    /// over.
+    /// Share of that average in the middle half of the window; the rest is spread over all of it.
     pub ramp_core: Option<f64>,
-    /// Share of the ramp time by which a motion ends before the average is complete; below 0.4,
-    /// or the end would need more acceleration than the rest.
+    /// Share of the window by which a motion ends early; below 0.4, otherwise the end would need a
+    /// larger acceleration than the rest.
     pub closing: Option<f64>,
-    /// Time at a stop point until the next movement starts; waits take it too \[s\].
+    /// Time at a stop point before the next movement, included in waits \[s\].
     pub settling_s: Option<f64>,
     /// Period of the path interpolator \[s\].
     pub interpolation_s: Option<f64>,

@@ -1,31 +1,30 @@
-//! The drive unit, the brakes, and what standing still costs.
+//! The drive unit, the brakes and the power at standstill.
 
 use super::error::RobotError;
 use super::fields::{Accepts, Fields};
 use super::provenance::Origin;
 
-/// Times of brakes \[s\].
+/// Brake times \[s\].
 const BRAKE_TIME: Accepts =
     Accepts::Between(0.0, 10.0, "0 or more and at most 10, in s (not milliseconds)");
 
-/// What becomes of the negative mechanical power of a joint.
+/// Use of the negative mechanical power of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sharing {
-    /// It is lost at its own axis.
+    /// It is lost at its axis.
     None,
-    /// The other axes use it over the common direct-current bus.
+    /// Other axes use it through the common DC bus.
     Bus,
 }
 
 /// The drive unit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drive {
-    /// Power of controller and drive with the motors on, without holding
-    /// currents and brake coils \[W\].
+    /// Power of controller and drives with motors on, without holding power and brake coils \[W\].
     pub base_w: f64,
     /// Sharing between the axes.
     pub sharing: Sharing,
-    /// Share of the negative power of the bus that is given back to the grid.
+    /// Share of the negative bus power that is fed back to the grid.
     pub regeneration: f64,
 }
 
@@ -46,16 +45,16 @@ impl Drive {
     }
 }
 
-/// The holding brakes, all joints together.
+/// The holding brakes of all joints.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Brakes {
     /// Energy of one release \[J\].
     pub energy_per_release_j: f64,
-    /// Time from the order to move until the brakes are open \[s\].
+    /// Time from the command until the brakes are released \[s\].
     pub release_s: f64,
-    /// Time from the order to hold until the brakes are closed \[s\].
+    /// Time from the command until the brakes hold \[s\].
     pub engage_s: f64,
-    /// Power of the coils that keep the brakes open \[W\].
+    /// Power of the coils of released brakes \[W\].
     pub power_released_w: f64,
 }
 
@@ -68,7 +67,7 @@ impl Brakes {
         let release = fields.number("release_s", BRAKE_TIME)?;
         let engage = fields.number("engage_s", BRAKE_TIME)?;
         let power = fields.number("power_released_w", Accepts::NonNegative)?;
-        // What is not there has no origin, and is estimated (`prior`).
+        // Missing values have no origin and are estimated (`prior`).
         let brakes = Brakes {
             energy_per_release_j: energy.unwrap_or(0.0),
             release_s: release.unwrap_or(0.0),
@@ -80,8 +79,7 @@ impl Brakes {
     }
 }
 
-/// Power at standstill with open brakes that the model of the copper loss does
-/// not contain.
+/// Power at standstill with released brakes in addition to the modelled copper loss.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Standstill {
     /// Constant holding power of each joint \[W\].

@@ -1,8 +1,8 @@
-//! What identification or diagnosis added to a robot: `[effects.ID]`, as it is written.
+//! Effects that identification or diagnosis added to a robot: `[effects.ID]` as written.
 //!
-//! Values are changes against the robot without the effect. A parameter of a joint is
-//! written for one joint (`joint = 3`, `stiction = 2.5`), for some (`stiction_j3 = 2.5`) or
-//! for all (`stiction = [0, 0, 2.5, 0, 0, 0]`). What they mean is known one layer above.
+//! Values are changes relative to the robot without the effect. A joint parameter is written for
+//! one joint (`joint = 3`, `stiction = 2.5`), for some (`stiction_j3 = 2.5`) or for all
+//! (`stiction = [0, 0, 2.5, 0, 0, 0]`). Module `effects` defines their meaning.
 
 use super::error::RobotError;
 use super::fields::{Accepts, Fields};
@@ -13,18 +13,18 @@ use super::provenance::Origin;
 pub struct EffectParameters {
     /// Id of the effect, such as `stribeck`.
     pub id: String,
-    /// Name and values of each parameter that is given.
+    /// Name and values of each given parameter.
     pub values: Vec<(String, Given)>,
-    /// Where the table stands.
+    /// Position of the table.
     pub place: String,
 }
 
 /// The values of a parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Given {
-    /// One of the robot.
+    /// One value for the robot.
     Robot(f64),
-    /// One for each joint; 0 for those that are not named.
+    /// One value per joint; 0 if not named.
     Joints(Vec<f64>),
 }
 
@@ -71,7 +71,7 @@ impl EffectParameters {
     }
 }
 
-/// `stiction_j3` is the third joint's `stiction`.
+/// `stiction_j3` is the `stiction` of joint 3.
 fn of_one_joint(key: &str, dof: usize) -> Option<(String, usize)> {
     let (name, joint) = key.rsplit_once("_j")?;
     let joint: usize = joint.parse().ok().filter(|joint| (1..=dof).contains(joint))?;

@@ -12,26 +12,26 @@ pub enum RobotError {
         .suggestion.as_ref().map_or(String::new(), |s| format!(", did you mean \"{s}\"?"))
     )]
     Unknown {
-        /// As asked for.
+        /// The requested name.
         name: String,
-        /// The nearest name of the catalogue, if one is near.
+        /// A similar name of the catalogue.
         suggestion: Option<String>,
     },
-    /// A robot of which no lengths are published.
+    /// A robot without published lengths.
     #[error(
         "the geometry of the robot \"{name}\" is not published, so that the catalogue lacks it; give \
          a robot TOML or URDF file that has it"
     )]
     Unpublished {
-        /// As asked for.
+        /// The requested name.
         name: String,
     },
-    /// The name fits several robots.
+    /// The name matches several robots.
     #[error("\"{name}\" fits several robots: {}; name one of them in full", .candidates.join(", "))]
     Ambiguous {
-        /// As asked for.
+        /// The requested name.
         name: String,
-        /// The robots it fits.
+        /// The matching robots.
         candidates: Vec<String>,
     },
     /// A file could not be read.
@@ -39,7 +39,7 @@ pub enum RobotError {
     Io {
         /// Path as given.
         path: String,
-        /// The system's reason.
+        /// Reason of the operating system.
         reason: String,
     },
     /// The robot that a file extends cannot be read.
@@ -47,42 +47,42 @@ pub enum RobotError {
     Base {
         /// `file:line`.
         place: String,
-        /// As the file names it.
+        /// Name in the file.
         name: String,
-        /// Why, with the way out.
+        /// Reason and remedy.
         reason: String,
     },
-    /// The file's kind is not supported.
+    /// The file type is not supported.
     #[error("{path} is no robot file; give a Robot TOML that ends in .toml or a URDF in .urdf")]
     Format {
         /// Path as given.
         path: String,
     },
-    /// A URDF that no model can be made of.
+    /// A URDF that cannot be converted to a model.
     #[error("{place}: {message}")]
     Urdf {
         /// `file:line` of the element.
         place: String,
-        /// What is wrong with it and the way out.
+        /// Error and remedy.
         message: String,
     },
-    /// A controller's configuration without a usable robot.
+    /// A controller configuration without a usable robot.
     #[error("{place}: {message}")]
     Configuration {
         /// `file`, or `file:line`.
         place: String,
-        /// What is wrong with it and the way out.
+        /// Error and remedy.
         message: String,
     },
-    /// Not TOML.
+    /// The file is not valid TOML.
     #[error("{place}: not valid TOML: {message}")]
     Syntax {
         /// `file:line`.
         place: String,
-        /// The parser's message.
+        /// Message of the parser.
         message: String,
     },
-    /// A key that no robot has.
+    /// An unknown key.
     #[error("{place}: unknown key \"{key}\" in {table}; known keys: {}", .known.join(", "))]
     UnknownKey {
         /// `file:line`.
@@ -108,10 +108,10 @@ pub enum RobotError {
         table: String,
         /// The missing key.
         key: String,
-        /// A similar key of the table, if there is one.
+        /// A similar key of the table.
         instead: Option<String>,
     },
-    /// A value of another type than the key's.
+    /// A value of a wrong type.
     #[error("{place}: {key} is {found}; give {expected}")]
     Type {
         /// `file:line`.
@@ -135,7 +135,7 @@ pub enum RobotError {
         /// Entries expected, with the reason.
         expected: String,
     },
-    /// A value that no robot can have.
+    /// An implausible value.
     #[error("{place}: {key} = {value}, but it must be {must}")]
     Value {
         /// `file:line`.
@@ -147,7 +147,7 @@ pub enum RobotError {
         /// What it must be.
         must: String,
     },
-    /// An effect whose law the model does not have.
+    /// An effect without a law in the model.
     #[error(
         "{place}: no law for the effect \"{id}\"{}; remove [effects.{id}], laws are known of {}",
         .suggestion.as_ref().map_or(String::new(), |s| format!(", did you mean \"{s}\"?")),
@@ -158,12 +158,12 @@ pub enum RobotError {
         place: String,
         /// Its id.
         id: String,
-        /// The nearest known one, if one is near.
+        /// A similar known id.
         suggestion: Option<String>,
-        /// All known ones.
+        /// All known ids.
         known: Vec<String>,
     },
-    /// `extends` leads too deep, probably in a circle.
+    /// `extends` is nested too deep, probably circular.
     #[error("{place}: \"extends\" is nested more than {limit} deep; remove the circle")]
     Extends {
         /// `file:line`.

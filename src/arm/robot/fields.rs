@@ -1,5 +1,4 @@
-//! Typed reading of one table of a robot file. Keys that nobody asked for are an error at the
-//! end.
+//! Typed reading of one table of a robot file; keys that were not read are an error.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +15,7 @@ pub(super) enum Accepts {
     Positive,
     /// 0 to 1.
     Share,
-    /// From the first to the second, as figures in SI units are; in words.
+    /// From the first to the second value; description in words.
     Between(f64, f64, &'static str),
 }
 
@@ -55,17 +54,17 @@ pub(super) const ANGLE: Accepts = Accepts::Between(
     13.0,
     "an angle in radians, at most two turns (180 degrees are 3.14159)",
 );
-/// Bounds of a joint \[rad\]; an endless one turns a hundred times to either side.
+/// Bounds of a joint \[rad\]; an endless joint has 100 turns to either side.
 pub(super) const TURN: Accepts = Accepts::Between(
     -2000.0,
     2000.0,
     "an angle in radians, at most 50, or 628 for an endless joint (180 degrees are 3.14159)",
 );
-/// Numbers from this on are shown with an exponent.
+/// Numbers from this size on have an exponent in messages.
 const HUGE: f64 = 1e9;
-/// Largest bound of a joint that is not endless \[rad\].
+/// Largest bound of a bounded joint \[rad\].
 const FARTHEST_TURN: f64 = 50.0;
-/// Least bound of an endless joint \[rad\].
+/// Smallest bound of an endless joint \[rad\].
 const ENDLESS: f64 = 600.0;
 
 /// One table, read key by key.
@@ -78,8 +77,7 @@ pub(super) struct Fields {
 }
 
 impl Fields {
-    /// The table in `node`; `name` stands for it in messages and origins, and
-    /// is empty for the document.
+    /// The table in `node`; `name` is its name in messages and origins, empty for the document.
     pub(super) fn new(name: &str, node: Node) -> Result<Fields, RobotError> {
         match node.value {
             Value::Table(entries) => Ok(Fields {
@@ -98,17 +96,17 @@ impl Fields {
         }
     }
 
-    /// Where the table begins.
+    /// Position of the table.
     pub(super) fn place(&self) -> String {
         self.place.to_string()
     }
 
-    /// Where a key that is not read yet stands; the table if it is not there.
+    /// Position of an unread key, or of the table if it is missing.
     pub(super) fn place_of(&self, key: &str) -> String {
         self.entries.get(key).map_or_else(|| self.place(), |node| node.place.to_string())
     }
 
-    /// The origins of what was read; an error where a key is left over.
+    /// The origins of the read keys; an error if a key was not read.
     pub(super) fn finish(self) -> Result<Vec<Origin>, RobotError> {
         if let Some((key, node)) = self.entries.first_key_value() {
             return Err(RobotError::UnknownKey {
@@ -121,28 +119,28 @@ impl Fields {
         Ok(self.origins)
     }
 
-    /// The key's node, if it is there.
+    /// The node of a key, if present.
     pub(super) fn take(&mut self, key: &str) -> Option<Node> {
         self.known.push(key.to_owned());
         self.entries.remove(key)
     }
 
-    /// Whether the key is there and not read yet.
+    /// Whether the key is present and unread.
     pub(super) fn has(&self, key: &str) -> bool {
         self.entries.contains_key(key)
     }
 
-    /// Whether a list stands at a key that is not read yet.
+    /// Whether an unread key has a list.
     pub(super) fn is_list(&self, key: &str) -> bool {
         self.entries.get(key).is_some_and(|node| matches!(node.value, Value::List(_)))
     }
 
-    /// The keys that are not read yet.
+    /// The unread keys.
     pub(super) fn keys(&self) -> Vec<String> {
         self.entries.keys().cloned().collect()
     }
 
-    /// The value, or an error that the key is missing.
+    /// The value, or an error for a missing key.
     pub(super) fn required<T>(&self, key: &str, value: Option<T>) -> Result<T, RobotError> {
         value.ok_or_else(|| RobotError::Missing {
             place: self.place(),
@@ -275,7 +273,7 @@ impl Fields {
             .collect()
     }
 
-    /// A list of `len` numbers, as the words `expected` say.
+    /// A list of `len` numbers; `expected` describes it.
     pub(super) fn numbers(
         &mut self,
         key: &str,
@@ -360,7 +358,7 @@ impl Fields {
         });
     }
 
-    /// The key with its table, as messages name it.
+    /// The key with its table for messages.
     pub(super) fn path(&self, key: &str) -> String {
         if self.name.is_empty() { key.to_owned() } else { format!("{}.{key}", self.name) }
     }
@@ -379,12 +377,12 @@ impl Fields {
     }
 }
 
-/// Whether a joint may have the bound \[rad\]: as one that is not endless, or as one that is.
+/// Whether the bound \[rad\] is possible for a bounded or an endless joint.
 pub(super) fn is_turn(bound: f64) -> bool {
     bound.abs() <= FARTHEST_TURN || is_endless(bound)
 }
 
-/// Whether the bound \[rad\] stands for an endless joint.
+/// Whether the bound \[rad\] is that of an endless joint.
 pub(super) fn is_endless(bound: f64) -> bool {
     bound.abs() >= ENDLESS
 }

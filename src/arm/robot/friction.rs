@@ -4,29 +4,29 @@ use super::error::RobotError;
 use super::fields::{Accepts, Fields};
 use super::provenance::Origin;
 
-/// Friction at the joint; laws that no source gives are absent.
+/// Joint friction; laws without a source are absent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Friction {
     /// Coulomb friction of each joint \[Nm\].
     pub coulomb: Vec<f64>,
     /// Viscous friction of each joint \[Nm s/rad\].
     pub viscous: Vec<f64>,
-    /// Half of what Coulomb friction is larger forwards than backwards \[Nm\].
+    /// Half of the Coulomb friction forwards minus backwards \[Nm\].
     pub coulomb_asymmetry: Option<Vec<f64>>,
-    /// The same of viscous friction \[Nm s/rad\].
+    /// The same for viscous friction \[Nm s/rad\].
     pub viscous_asymmetry: Option<Vec<f64>>,
     /// Friction at low speed above Coulomb friction.
     pub stribeck: Option<Stribeck>,
-    /// Friction per torque through the gear \[1\].
+    /// Friction per gear torque \[1\].
     pub load_friction: Option<Vec<f64>>,
 }
 
-/// Friction that dies away with speed.
+/// Friction that falls with speed (Stribeck effect).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stribeck {
-    /// Friction at breakaway above Coulomb friction \[Nm\].
+    /// Breakaway friction above Coulomb friction \[Nm\].
     pub stiction: Vec<f64>,
-    /// Speed at which 1/e of it is left \[rad/s\].
+    /// Speed at which it has fallen to 1/e \[rad/s\].
     pub velocity: Vec<f64>,
 }
 

@@ -1,9 +1,8 @@
-//! The chain of joints, and the OPW form that most industrial arms have.
+//! The chain of joints, and the OPW form of most industrial arms.
 //!
-//! OPW: M. Brandstötter, A. Angerer, M. Hofbaur, "An analytical solution of the
-//! inverse kinematics problem of industrial serial manipulators with an
-//! ortho-parallel basis and a spherical wrist", Austrian Robotics Workshop 2014;
-//! the letters are theirs.
+//! OPW: M. Brandstötter, A. Angerer, M. Hofbaur, "An analytical solution of the inverse kinematics
+//! problem of industrial serial manipulators with an ortho-parallel basis and a spherical wrist",
+//! Austrian Robotics Workshop 2014, with its symbols.
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
 
@@ -13,22 +12,22 @@ pub const MAX_DOF: usize = 7;
 /// Acceleration of free fall \[m/s²\].
 pub const GRAVITY: f64 = 9.81;
 
-/// Below this, a coordinate of an axis or an origin is rounding of a zero.
+/// Coordinates below this are rounding errors of zero.
 const ROUNDING: f64 = 1e-15;
 
-/// One revolute joint, placed in its parent's frame.
+/// A revolute joint with its placement in the parent frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
-    /// Origin of the joint's frame in the parent's frame \[m\].
+    /// Origin of the joint frame in the parent frame \[m\].
     pub translation: Vector3<f64>,
-    /// Rotation of the joint's frame at angle 0 in the parent's frame.
+    /// Rotation of the joint frame at angle 0 in the parent frame.
     pub rotation: Rotation3<f64>,
-    /// Axis of rotation, the same in the joint's frame and at angle 0.
+    /// Axis of rotation in the joint frame.
     pub axis: Unit<Vector3<f64>>,
 }
 
 impl Joint {
-    /// Rotation of the joint's frame in the parent's frame at the angle `q` \[rad\].
+    /// Rotation of the joint frame in the parent frame at the angle `q` \[rad\].
     #[must_use]
     #[inline]
     pub fn rotation_at(&self, q: f64) -> Matrix3<f64> {
@@ -46,7 +45,7 @@ impl Joint {
             v.z * a.y + sin * a.x,
             cos + v.z * a.z,
         );
-        // Most chains are drawn with frames that are parallel at angle 0.
+        // Most chains have parallel frames at angle 0.
         if *self.rotation.matrix() == Matrix3::identity() {
             return turn;
         }
@@ -56,24 +55,23 @@ impl Joint {
 
 /// Parameters of an ortho-parallel basis with a spherical wrist \[m, rad\].
 ///
-/// The OPW angle of a joint is `signs · q − offsets`. At OPW angle 0 of all
-/// joints the arm points straight up along z of the base.
+/// The OPW angle of a joint is `signs · q − offsets`. At OPW angles 0 the arm points along z of
+/// the base.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Opw {
-    /// Axis 2 before axis 1.
+    /// Distance from axis 1 forwards to axis 2.
     pub a1: f64,
-    /// Offset of the forearm from axis 3; negative: axis 4 lies above axis 3
-    /// when the forearm is level.
+    /// Offset of the forearm from axis 3; negative if axis 4 is above axis 3 with level forearm.
     pub a2: f64,
     /// Lateral offset of the arm from axis 1.
     pub b: f64,
     /// Height of axis 2.
     pub c1: f64,
-    /// Upper arm.
+    /// Length of the upper arm.
     pub c2: f64,
-    /// Forearm, to the wrist centre.
+    /// Length of the forearm to the wrist centre.
     pub c3: f64,
-    /// Wrist centre to flange.
+    /// Distance from wrist centre to flange.
     pub c4: f64,
     /// Zero offsets of the joints.
     pub offsets: [f64; 6],
@@ -81,27 +79,27 @@ pub struct Opw {
     pub signs: [f64; 6],
 }
 
-/// An arm of the OPW form up to axis 5, whose axis 6 does not meet the crossing of axes 4 and 5.
+/// An arm of OPW form up to axis 5 whose axis 6 misses the intersection of axes 4 and 5.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OffsetWrist {
-    /// The arm if its axis 6 went through the crossing of axes 4 and 5, and its flange
-    /// lay there (`c4` = 0).
+    /// The arm with an axis 6 through the intersection of axes 4 and 5 and its flange there
+    /// (`c4` = 0).
     pub arm: Opw,
-    /// That flange, at angle 0 of that axis 6, in the frame of joint 5.
+    /// That flange at angle 0 of that axis 6, in the frame of joint 5.
     pub crossing: Isometry3<f64>,
 }
 
-/// How the joint angles that a controller reports turn the serial chain.
+/// Relation of the reported joint angles to those of the serial chain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coupling {
     /// Each joint turns its own link.
     None,
-    /// A parallelogram drives the forearm: axis 3 is reported as its angle to
-    /// the base, so that the serial angle is q3 − q2.
+    /// A parallelogram drives the forearm: the reported angle of axis 3 is relative to the base,
+    /// so the serial angle is q3 − q2.
     Parallelogram,
 }
 
-/// A rotation for each joint.
+/// One rotation per joint.
 pub type Rotations = [Matrix3<f64>; MAX_DOF];
 
 /// The chain from base to flange.
@@ -109,22 +107,21 @@ pub type Rotations = [Matrix3<f64>; MAX_DOF];
 pub struct Geometry {
     /// Joints from the base on.
     pub joints: Vec<Joint>,
-    /// tool0 in the last joint's frame; z points out of the flange.
+    /// tool0 in the frame of the last joint; z points out of the flange.
     pub flange: Isometry3<f64>,
-    /// The OPW parameters of the chain, where it has that form; a chain that is given
-    /// joint by joint may have it too.
+    /// The OPW parameters if the chain has that form; also for a chain given joint by joint.
     pub opw: Option<Opw>,
-    /// The form of a chain of six joints whose wrist axes do not meet in one point.
+    /// The form of a six-joint chain with wrist axes that do not meet in one point.
     pub offset_wrist: Option<OffsetWrist>,
     /// Coupling of joints 2 and 3.
     pub coupling: Coupling,
-    /// The base frame in the world: where the robot stands, and how it is mounted.
+    /// The base frame in the world frame.
     pub base: Isometry3<f64>,
 }
 
 impl Geometry {
-    /// The serial angles of the reported ones, both \[rad\]; entries beyond the
-    /// robot's joints are 0. Velocities and accelerations map the same way.
+    /// The serial angles of the reported ones, both \[rad\]; entries beyond the joints are 0.
+    /// Velocities and accelerations map in the same way.
     #[must_use]
     pub fn to_serial(&self, q: &[f64]) -> [f64; MAX_DOF] {
         let mut serial = [0.0; MAX_DOF];
@@ -137,7 +134,7 @@ impl Geometry {
         serial
     }
 
-    /// Rotation of each joint's frame in its parent's at the reported angles `q` \[rad\].
+    /// Rotation of each joint frame in its parent frame at the reported angles `q` \[rad\].
     #[must_use]
     pub fn rotations(&self, q: &[f64]) -> Rotations {
         let mut rotations = [Matrix3::zeros(); MAX_DOF];
@@ -154,8 +151,8 @@ impl Geometry {
         }
     }
 
-    /// The torques at the reported joints of those at the serial ones (the
-    /// transpose of [`to_serial`](Self::to_serial)) \[Nm\].
+    /// Torques at the reported joints from those at the serial ones \[Nm\], the transpose of
+    /// [`to_serial`](Self::to_serial).
     #[must_use]
     pub fn from_serial_torque(&self, mut tau: [f64; MAX_DOF]) -> [f64; MAX_DOF] {
         if self.coupling == Coupling::Parallelogram {
@@ -164,7 +161,7 @@ impl Geometry {
         tau
     }
 
-    /// Unit vector against gravity, in the base frame.
+    /// Unit vector against gravity in the base frame.
     #[must_use]
     pub fn up(&self) -> Vector3<f64> {
         self.base.rotation.inverse() * Vector3::z()
@@ -172,9 +169,8 @@ impl Geometry {
 }
 
 impl Opw {
-    /// The chain of this arm. At angle 0 of all joints, every joint's frame is
-    /// parallel to the base frame; the frames of joints 4 to 6 lie in the wrist
-    /// centre.
+    /// The chain of this arm. At joint angles 0 all joint frames are parallel to the base frame;
+    /// the frames of joints 4 to 6 are in the wrist centre.
     pub(super) fn chain(&self) -> (Vec<Joint>, Isometry3<f64>) {
         let steps = [
             (Vector3::zeros(), Vector3::z()),

@@ -1,4 +1,4 @@
-//! Reading `[kinematics]` and `[[joint]]` of a robot file.
+//! Reads `[kinematics]` and `[[joint]]` of a robot file.
 
 use nalgebra::{Isometry3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
 

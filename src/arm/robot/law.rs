@@ -3,16 +3,15 @@
 /// The state that a law depends on.
 #[derive(Clone, Copy, Debug)]
 pub struct LawState {
-    /// Time since the log began \[s\]; infinite where there is none: a robot that has run
-    /// for long.
+    /// Time since the start of the log \[s\]; infinite without a log: a robot in steady state.
     pub t: f64,
     /// Position of the joint \[rad\].
     pub q: f64,
-    /// Rate of the motor over the gear ratio \[rad/s\].
+    /// Motor speed over the gear ratio \[rad/s\].
     pub rate: f64,
-    /// Its sense, 1, −1, or 0 at rest; between them where it has to be smooth.
+    /// Sign of its motion, 0 at rest; between −1 and 1 if smoothed.
     pub sense: f64,
-    /// Torque of the rigid bodies through the gear \[Nm\].
+    /// Rigid-body torque through the gear \[Nm\].
     pub gear: f64,
 }
 
@@ -21,16 +20,16 @@ pub struct LawState {
 pub struct Law {
     /// Joint, from 0.
     pub joint: usize,
-    /// Its parameters, in the order in which the law takes them.
+    /// Its parameters in the order of the law.
     pub values: [f64; Law::PARAMETERS],
-    /// Friction, which turns with the motor; else a torque between the links.
+    /// True for friction, which moves with the motor; false for a torque between the links.
     pub dissipates: bool,
     /// Torque \[Nm\] at a state.
     pub torque: fn(&LawState, &[f64; Law::PARAMETERS]) -> f64,
 }
 
 impl Law {
-    /// Parameters at most.
+    /// Largest number of parameters.
     pub const PARAMETERS: usize = 4;
 }
 

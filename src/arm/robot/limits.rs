@@ -1,38 +1,37 @@
-//! What the robot may not exceed.
+//! Limits of the robot.
 
 use super::error::RobotError;
 use super::fields::{Accepts, Fields};
 use super::pose_acceleration::PoseAcceleration;
 use super::provenance::Origin;
 
-/// Speeds of joints \[rad/s\].
+/// Joint speeds \[rad/s\].
 const SPEED: Accepts = Accepts::Between(
     f64::MIN_POSITIVE,
     100.0,
     "more than 0 and at most 100, in rad/s (180 deg/s are 3.14159)",
 );
-/// Accelerations of joints \[rad/s²\].
+/// Joint accelerations \[rad/s²\].
 const ACCELERATION: Accepts =
     Accepts::Between(f64::MIN_POSITIVE, 2000.0, "more than 0 and at most 2000, in rad/s2");
-/// Speeds of the tool centre point \[m/s\].
+/// TCP speeds \[m/s\].
 pub(super) const TCP_SPEED: Accepts =
     Accepts::Between(f64::MIN_POSITIVE, 50.0, "more than 0 and at most 50, in m/s (not mm/s)");
 
-/// Limits of the joints and of the tool centre point. A limit that no source
-/// gives is `None`.
+/// Limits of the joints and of the TCP; `None` without a source.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limits {
     /// Range of each joint \[rad\].
     pub position: Vec<[f64; 2]>,
     /// Wider ranges under a condition.
     pub position_if: Vec<PositionIf>,
-    /// Range of q3 − q2, which the rods of a parallelogram robot allow \[rad\].
+    /// Range of q3 − q2 within the rods of a parallelogram robot \[rad\].
     pub coupled: Option<[f64; 2]>,
     /// Largest speed of each joint \[rad/s\].
     pub velocity: Option<Vec<f64>>,
     /// Largest acceleration of each joint \[rad/s²\].
     pub acceleration: Option<Vec<f64>>,
-    /// How the accelerations of axes 1 to 3 depend on the pose; the constant ones hold everywhere.
+    /// Pose dependence of the accelerations of axes 1 to 3; the constant limits hold in all poses.
     pub acceleration_by_pose: Option<PoseAcceleration>,
     /// Largest jerk of each joint \[rad/s³\].
     pub jerk: Option<Vec<f64>>,
@@ -44,24 +43,23 @@ pub struct Limits {
     pub tcp_acceleration: Option<f64>,
 }
 
-/// A wider range of one joint while another one is within an interval.
+/// A wider range of one joint while another joint is within an interval.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PositionIf {
-    /// The joint whose range widens, from 0.
+    /// The joint with the wider range, from 0.
     pub joint: usize,
     /// Its range under the condition \[rad\].
     pub position: [f64; 2],
-    /// The joint that the condition is about, from 0.
+    /// The joint of the condition, from 0.
     pub if_joint: usize,
-    /// Where that joint must be \[rad\].
+    /// Interval of that joint \[rad\].
     pub if_within: [f64; 2],
 }
 
 impl Limits {
-    /// The range of joint `joint` (from 0) at the joint angles `q` \[rad\]:
-    /// its own one, widened by each condition that holds; for joint 3 narrowed by
-    /// the [`coupled`](Self::coupled) range at the angle of joint 2. An unbounded
-    /// range for a joint that the robot does not have.
+    /// The range of `joint` (from 0) at the joint angles `q` \[rad\]: its range, widened by each
+    /// fulfilled condition; for joint 3 narrowed by the [`coupled`](Self::coupled) range at the
+    /// angle of joint 2. Unbounded for a missing joint.
     #[must_use]
     pub fn position_at(&self, q: &[f64], joint: usize) -> [f64; 2] {
         let unbounded = [f64::NEG_INFINITY, f64::INFINITY];

@@ -6,31 +6,29 @@ use super::error::RobotError;
 use super::fields::{Accepts, Fields, LENGTH};
 use super::provenance::Origin;
 
-/// Share of the largest principal moment by which one may miss being
-/// consistent: rounding of numbers printed with few digits.
+/// Tolerance of consistency relative to the largest principal moment: rounding of printed numbers.
 const ROUNDING: f64 = 1e-9;
 
-/// Largest radius of gyration of a robot's part \[m\].
+/// Largest radius of gyration of a part of a robot \[m\].
 const FARTHEST_MASS: f64 = 5.0;
 
 /// Masses \[kg\].
 pub(super) const MASS: Accepts = Accepts::Between(0.0, 1e5, "0 or more and at most 100000, in kg");
 
-/// The rigid body behind one joint, in that joint's frame.
+/// The rigid body moved by one joint, in the joint frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link {
     /// Mass \[kg\].
     pub mass: f64,
     /// Centre of mass \[m\].
     pub com: Vector3<f64>,
-    /// Inertia about the centre of mass, axes of the joint's frame \[kg m²\].
+    /// Inertia about the centre of mass, in the joint frame axes \[kg m²\].
     pub inertia: Matrix3<f64>,
 }
 
 impl Link {
-    /// Whether some distribution of positive mass has this inertia: the
-    /// principal moments are not negative and none exceeds the sum of the
-    /// other two.
+    /// Whether a distribution of positive mass can have this inertia: no principal moment is
+    /// negative or exceeds the sum of the other two.
     #[must_use]
     pub fn is_consistent(&self) -> bool {
         let moments = principal_moments(&self.inertia);
@@ -38,7 +36,7 @@ impl Link {
         self.mass >= 0.0 && moments[0] >= -slack && moments[2] <= moments[0] + moments[1] + slack
     }
 
-    /// Why no body has this mass and inertia, if none has; in words that name the moments.
+    /// Reason why no body can have this mass and inertia, if so, with the moments.
     #[must_use]
     pub fn impossible(&self) -> Option<String> {
         let [a, b, c] = principal_moments(&self.inertia);
@@ -58,7 +56,7 @@ impl Link {
         })
     }
 
-    /// The body of a frame, seen from the frame that it is placed in.
+    /// The body in the parent frame of its frame.
     pub(super) fn placed(&self, placed: &Isometry3<f64>) -> Link {
         let r = placed.rotation.to_rotation_matrix();
         Link {
@@ -109,11 +107,11 @@ impl Link {
     }
 }
 
-/// What is mounted on a link, such as a valve block on the upper arm.
+/// A part mounted on a link, such as a valve block on the upper arm.
 pub(super) struct ArmLoad {
-    /// The joint behind which it is mounted, from 0.
+    /// The joint that moves it, from 0.
     pub(super) joint: usize,
-    /// The body, in that joint's frame.
+    /// The body in the frame of that joint.
     pub(super) body: Link,
 }
 
@@ -138,8 +136,7 @@ impl ArmLoad {
     }
 }
 
-/// The matrix of `[xx, yy, zz, xy, xz, yz]`; the last three are its entries, not
-/// their negatives.
+/// The matrix of `[xx, yy, zz, xy, xz, yz]`; the last three are the entries, not negated.
 pub(super) fn symmetric([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Matrix3<f64> {
     Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
 }

@@ -1,4 +1,4 @@
-//! A model from a file or from the catalogue.
+//! Loads a model from a file or the catalogue.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -10,16 +10,16 @@ use super::model::Model;
 use super::tree::{self, Node, Value};
 use super::urdf::import_urdf;
 
-/// How many robots may extend each other.
+/// Largest depth of `extends`.
 const MAX_EXTENDS: usize = 8;
 
-/// The robot in the Robot TOML or URDF file `name_or_path`, or else the robot of the
-/// catalogue with that name.
+/// The robot of the Robot TOML or URDF file `name_or_path`, otherwise the robot of the catalogue
+/// with this name.
 ///
-/// A path is what ends in `.toml` or `.urdf` or names an existing file.
+/// Names that end in `.toml` or `.urdf` and names of existing files are paths.
 ///
 /// # Errors
-/// The file cannot be read or is wrong; the catalogue has no such robot.
+/// The file is unreadable or wrong; the catalogue does not contain the robot.
 pub fn load(name_or_path: &str) -> Result<Model, RobotError> {
     let path = Path::new(name_or_path);
     if kind(path).is_some() {
@@ -32,18 +32,18 @@ pub fn load(name_or_path: &str) -> Result<Model, RobotError> {
     find(name_or_path)
 }
 
-/// The robot of the catalogue that `name` means; see the crate's list in
-/// [`names`](super::names). Case, spaces and punctuation do not matter, `ROB1_1600_1.45_10` is
-/// understood, and payload or reach may be left out where only one robot fits.
+/// The robot of the catalogue with this name; [`names`](super::names) lists them. Case, spaces and
+/// punctuation are ignored, `ROB1_1600_1.45_10` is accepted, and payload or reach may be omitted if
+/// only one robot matches.
 ///
 /// # Errors
-/// No robot fits, or several do.
+/// No robot matches, or several do.
 pub fn find(name: &str) -> Result<Model, RobotError> {
     Model::read(resolve(catalogue::document(name)?, None, 0)?)
 }
 
-/// The robot of a Robot TOML text; `file` names it in messages, and `extends` can
-/// name robots of the catalogue only.
+/// The robot of a Robot TOML text; `file` is its name in messages. `extends` may only name robots
+/// of the catalogue.
 ///
 /// # Errors
 /// The text is wrong.
@@ -51,9 +51,9 @@ pub fn from_toml(file: &str, text: &str) -> Result<Model, RobotError> {
     Model::read(resolve(tree::parse(file, text)?, None, 0)?)
 }
 
-/// Lays the document over the robot that it `extends`, and that one over its own.
+/// Overlays the document on the robot that it `extends`, recursively.
 ///
-/// `folder` is where the document lies; `None` for the catalogue.
+/// `folder` is the folder of the document; `None` for the catalogue.
 pub(super) fn resolve(node: Node, folder: Option<&Path>, depth: usize) -> Result<Node, RobotError> {
     let Value::Table(entries) = &node.value else { return Ok(node) };
     let Some(extends) = entries.get("extends") else { return Ok(node) };
@@ -95,7 +95,7 @@ enum Kind {
     Urdf,
 }
 
-/// The kind that the name of a file says.
+/// The kind by the file extension.
 fn kind(path: &Path) -> Option<Kind> {
     let extension = path.extension()?.to_str()?.to_ascii_lowercase();
     match extension.as_str() {

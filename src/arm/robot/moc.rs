@@ -1,9 +1,8 @@
-//! A controller's motion configuration, `SYSPAR/MOC.cfg`, as an overlay of the
-//! catalogue's robot.
+//! A motion configuration of a controller, `SYSPAR/MOC.cfg`, as an overlay on a catalogue robot.
 //!
-//! It names the robot and holds what was set up on it: joint ranges, base frame, arm
-//! loads, the largest speed of the TCP, the levels of the friction compensation. It
-//! has no lengths, gears or motors of the standard axes.
+//! It contains the robot type and its installation: joint ranges, base frame, arm loads, the
+//! largest TCP speed, the levels of the friction compensation. It has no lengths, gears or motors
+//! of the standard axes.
 
 use std::fmt::Write;
 
@@ -17,29 +16,29 @@ use super::load::find as find_robot;
 use super::system_parameters::{Entry, break_off, section};
 use super::toml_text::{list, pose, quoted};
 
-/// Sections of a controller's own file: of the first ones, and of the last.
+/// One of the first and one of the last sections of a file written by a controller.
 const ENDS: [&str; 2] = ["MOTION_SYSTEM", "MOTOR_CALIB"];
 
-/// Sections whose entries are read.
+/// Sections that are read.
 const READ: [&str; 5] = ["MOTION_PLANNER", "ROBOT", "ARM", "ARM_LOAD", "CFRIC_BLOCK"];
 
-/// By how much the length of a quaternion may miss 1: what few printed digits do.
+/// Tolerance of the length of a quaternion: few printed digits.
 const UNIT: f64 = 0.01;
 
-/// Metres and parts of a quaternion.
+/// Coordinates in m and components of a quaternion.
 const PLACEMENT: Accepts = Accepts::Between(-1000.0, 1000.0, "a number, in m");
 /// Levels of the friction compensation \[Nm\].
 const FRICTION_LEVEL: Accepts = Accepts::Between(0.0, 1000.0, "0 or more and at most 1000, in Nm");
 
-/// How every motion configuration begins.
+/// Start of every motion configuration.
 const HEADER: &str = "MOC:CFG_";
 
-/// The Robot TOML of the robot in a `MOC.cfg`; `file` names it in messages and as the
-/// source, `unit` the mechanical unit where the controller has several robots.
+/// The Robot TOML of the robot in a `MOC.cfg`; `file` is its name in messages and as source, `unit`
+/// the mechanical unit if the controller has several robots.
 ///
 /// # Errors
-/// It is no motion configuration, breaks off, or lacks a range; the catalogue does not
-/// have its robot; it has several and `unit` names none of them.
+/// It is no motion configuration, is truncated or lacks a range; the catalogue does not contain its
+/// robot; it has several robots and `unit` names none of them.
 pub fn import_moc(file: &str, text: &str, unit: Option<&str>) -> Result<String, RobotError> {
     let configuration = Configuration { file, text };
     configuration.check_whole()?;
@@ -70,7 +69,7 @@ pub fn import_moc(file: &str, text: &str, unit: Option<&str>) -> Result<String, 
         let _ = writeln!(out, "  {},", list(&configuration.range(arm, keys, joint)?));
     }
     let _ = write!(out, "]\nposition_source = {source}\nposition_provenance = \"identified\"\n");
-    // What is set up on the controller holds without the conditions of the data sheet.
+    // Ranges of the controller hold without the conditions of the data sheet.
     out.push_str("position_if = []\n");
     if let Some(arm) = joints.get(2).and_then(|joint| find(&arms, joint))
         && arm.contains_key("upper_joint_coupl_bound")
@@ -129,7 +128,7 @@ impl Configuration<'_> {
             );
         }
         let broken = break_off(self.text).map(|(line, how)| (line, how.to_owned()));
-        // What a controller writes ends in other sections than it begins with.
+        // A file that starts like one of a controller must also end like one.
         let [begins, ends] = ENDS.map(|name| !section(self.text, name).is_empty());
         let lacks = (begins && !ends)
             .then(|| (self.text.lines().count(), format!("there is no section {}", ENDS[1])));
@@ -144,7 +143,7 @@ impl Configuration<'_> {
         Ok(())
     }
 
-    /// Every entry of a section has a name of its own, every key of an entry one value.
+    /// Entries of a section have distinct names, keys of an entry are unique.
     fn check_once(&self, name: &str) -> Result<(), RobotError> {
         let entries = section(self.text, name);
         for (i, entry) in entries.iter().enumerate() {
@@ -167,7 +166,7 @@ impl Configuration<'_> {
         Ok(())
     }
 
-    /// The robot and its number among the robots.
+    /// The robot and its index among the robots.
     fn robot(&self, unit: Option<&str>) -> Result<(usize, Entry), RobotError> {
         let robots = section(self.text, "ROBOT");
         let name = |robot: &Entry| robot.get("name").cloned().unwrap_or_default();
@@ -230,7 +229,7 @@ impl Configuration<'_> {
         Ok(Some(Isometry3::from_parts(Translation3::new(x, y, z), turn)))
     }
 
-    /// The levels of all joints; `None` where the file has none.
+    /// The levels of all joints; `None` if the file has none.
     fn friction(&self, index: usize, dof: usize) -> Result<Option<Vec<f64>>, RobotError> {
         let blocks = section(self.text, "CFRIC_BLOCK");
         let mut levels = Vec::with_capacity(dof);
@@ -267,7 +266,7 @@ impl Configuration<'_> {
         for (i, joint) in joints.iter().enumerate() {
             let arm = find(arms, joint);
             let stated_name = arm.and_then(stated_of).filter(|name| !name.is_empty());
-            // A load that an arm refers to hangs there, whatever its number.
+            // A load with a reference is at its arm, independent of its number.
             let usual = format!("{prefix}{}", i + 1);
             let own = Some(usual).filter(|name| !is_referred(name));
             let Some(name) = stated_name.clone().or(own) else { continue };
@@ -310,7 +309,7 @@ impl Configuration<'_> {
         Ok(out)
     }
 
-    /// The keys of a load's body; `None` where it weighs nothing.
+    /// The keys of the body of a load; `None` if its mass is 0.
     fn arm_load(&self, load: &Entry, name: &str) -> Result<Option<String>, RobotError> {
         let or_zero = |key: &str, accepts: Accepts| {
             if load.contains_key(key) { self.number(load, key, name, accepts) } else { Ok(0.0) }

@@ -1,9 +1,9 @@
-//! What a robot is: an immutable [`Model`] of geometry, limits, inertia,
-//! friction, motors, drives and brakes, with the origin of every number.
+//! The robot: an immutable [`Model`] of geometry, limits, inertia, friction, motors, drives and
+//! brakes, with the origin of every number.
 //!
-//! A model is loaded from a Robot TOML or URDF file ([`load`]) or found in the embedded
-//! catalogue by a name as people write it ([`find`]). SI units and radians
-//! throughout; joint numbers count from 1 in files and messages, from 0 in code.
+//! A model is loaded from a Robot TOML or URDF file ([`load`]) or found in the embedded catalogue
+//! by its name ([`find`]). Units are SI and radians; joint numbers count from 1 in files and
+//! messages, from 0 in code.
 
 mod calibration;
 mod catalogue;

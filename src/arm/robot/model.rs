@@ -23,35 +23,34 @@ const ROBOT_MASS: Accepts =
 /// Payloads \[kg\].
 const PAYLOAD: Accepts = Accepts::Between(0.05, 5000.0, "at least 0.05 and at most 5000, in kg");
 
-/// A robot. Every list has one entry for each joint, from the base on.
+/// A robot. Every list has one entry per joint, from the base on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model {
     /// Name, such as `IRB1600-10/1.45`.
     pub name: String,
-    /// The file that it was loaded from; `None` for robots of the catalogue.
+    /// Its file; `None` for robots of the catalogue.
     pub file: Option<String>,
-    /// The robot whose type it is, where that is not its name: that which its file extends or states.
+    /// Its type if different from its name: from `extends` or stated.
     pub type_name: Option<String>,
-    /// The whole robot \[kg\], where its file states it.
+    /// Total mass \[kg\], if stated.
     pub mass: Option<f64>,
-    /// The load that it is made for \[kg\], where its file states it.
+    /// Rated load \[kg\], if stated.
     pub payload: Option<f64>,
     /// Number of joints, 1 to [`MAX_DOF`].
     pub dof: usize,
     /// The chain from base to flange.
     pub kinematics: Geometry,
-    /// What the robot may not exceed.
+    /// Limits of the robot.
     pub limits: Limits,
-    /// The rigid bodies with what is mounted on them; empty where the robot has no
-    /// dynamics.
+    /// The links with mounted parts; empty if the robot has no dynamics.
     pub links: Vec<Link>,
-    /// Friction; zero where no source gives it.
+    /// Friction; zero without a source.
     pub friction: Friction,
     /// Motors and gears.
     pub motors: Option<Motors>,
-    /// The wrist's gears; uncoupled where no source says otherwise.
+    /// The wrist gears; uncoupled without a source.
     pub wrist: Wrist,
-    /// The drive unit; zero power where no source gives it.
+    /// The drive unit; zero power without a source.
     pub drive: Drive,
     /// Holding brakes.
     pub brakes: Option<Brakes>,
@@ -59,20 +58,20 @@ pub struct Model {
     pub standstill: Standstill,
     /// The motion planner.
     pub controller: Controller,
-    /// How its logs differ from it.
+    /// Sensor errors of its logs.
     pub sensors: Sensors,
-    /// What identification or diagnosis added, as far as the fields above do not contain it.
+    /// Effects of identification or diagnosis that the fields above do not contain.
     pub effects: Vec<EffectParameters>,
     /// The laws of these effects.
     pub laws: Vec<Law>,
-    /// Robots that fit what was measured, where the model is one of them.
+    /// Draws that fit the measured data, if the model is calibrated.
     pub calibration: Option<Calibration>,
     /// The origin of every number, in the order of the fields above.
     pub origins: Vec<Origin>,
 }
 
 impl Model {
-    /// What a controller of ABB calls it: the name without `IRB`.
+    /// Its type in ABB controllers: the name without `IRB`.
     #[must_use]
     pub fn type_name(&self) -> &str {
         self.name.strip_prefix("IRB").map_or(self.name.as_str(), str::trim_start)
@@ -84,19 +83,19 @@ impl Model {
         !self.links.is_empty()
     }
 
-    /// The assumed numbers, each with its source, as a report lists them.
+    /// Sentences about the assumed numbers and their sources, for reports.
     #[must_use]
     pub fn assumed(&self) -> Vec<String> {
         provenance::sentences(&self.origins, Provenance::Assumed)
     }
 
-    /// The estimated numbers in the same way.
+    /// The same for the estimated numbers.
     #[must_use]
     pub fn estimated(&self) -> Vec<String> {
         provenance::sentences(&self.origins, Provenance::Estimated)
     }
 
-    /// Whether a number is known: stated by the robot's file and neither assumed nor estimated.
+    /// Whether a number is stated in the robot file and neither assumed nor estimated.
     #[must_use]
     pub fn is_known(&self, table: &str, key: &str) -> bool {
         let mut origins = self.origins.iter().filter(|o| o.table == table && o.key == key);
@@ -104,32 +103,32 @@ impl Model {
         origins.next().is_some_and(|origin| !rough.contains(&origin.provenance))
     }
 
-    /// How many numbers or lists are known in this way.
+    /// Number of values with this provenance.
     #[must_use]
     pub fn count(&self, provenance: Provenance) -> usize {
         self.origins.iter().filter(|origin| origin.provenance == Some(provenance)).count()
     }
 
-    /// How a number is known, where its origin says so.
+    /// The provenance of a number, if stated.
     #[must_use]
     pub fn provenance_of(&self, table: &str, key: &str) -> Option<Provenance> {
         self.origin_of(table, key).and_then(|origin| origin.provenance)
     }
 
-    /// The origin of a number; the key `""` stands for the first of the table.
+    /// The origin of a number; the key `""` denotes the first one of the table.
     #[must_use]
     pub fn origin_of(&self, table: &str, key: &str) -> Option<&Origin> {
         self.origins.iter().find(|o| o.table == table && o.key == key)
     }
 
-    /// Largest torques that bound how the robot moves \[Nm\]: none that are estimated.
+    /// Torque limits for motions \[Nm\]; `None` if they are estimated.
     #[must_use]
     pub fn torque_bounds(&self) -> Option<&Vec<f64>> {
         let estimated = self.provenance_of("limits", "torque") == Some(Provenance::Estimated);
         self.limits.torque.as_ref().filter(|_| self.has_dynamics() && !estimated)
     }
 
-    /// The model of a document whose `extends` has been resolved.
+    /// The model of a document with resolved `extends`.
     pub(super) fn read(node: Node) -> Result<Model, RobotError> {
         let mut robot = Fields::new("", node)?;
         let mut origins = Vec::new();
@@ -174,7 +173,7 @@ impl Model {
             part(&mut robot, "effects", |t| EffectParameters::read_all(t, dof, &mut origins))?
                 .unwrap_or_default();
         let calibration = part(&mut robot, "calibration", Calibration::read)?;
-        // How an identification came to its numbers is for people; nothing is computed from it.
+        // The table `identification` documents its origin; it is not used in computations.
         robot.take("identification");
         origins.extend(robot.finish()?);
         Ok(Model {
@@ -203,7 +202,7 @@ impl Model {
     }
 }
 
-/// A part of a robot in a table of its own, where the table is there.
+/// A part of a robot with its own table, if present.
 fn part<T>(
     robot: &mut Fields,
     key: &str,
@@ -212,7 +211,7 @@ fn part<T>(
     robot.table(key)?.map(read).transpose()
 }
 
-/// The links with the arm loads mounted on them; none, or one for each joint.
+/// The links with mounted arm loads; none, or one per joint.
 fn read_links(
     robot: &mut Fields,
     dof: usize,

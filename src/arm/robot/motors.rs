@@ -4,40 +4,40 @@ use super::error::RobotError;
 use super::fields::{Accepts, Fields};
 use super::provenance::Origin;
 
-/// Phases of a motor, each carrying the rms current.
+/// Number of motor phases, each with the rms current.
 const PHASES: f64 = 3.0;
 
-/// Torque constants of motors \[Nm per A rms\].
+/// Motor torque constants \[Nm per A rms\].
 const TORQUE_CONSTANT: Accepts = Accepts::Between(
     f64::MIN_POSITIVE,
     50.0,
     "more than 0 and at most 50, in Nm per A rms at the motor (not mNm)",
 );
-/// Inertias of rotors \[kg m²\].
+/// Largest rotor inertia \[kg m²\].
 const LARGEST_ROTOR: f64 = 0.5;
-/// The largest that one has at its joint \[kg m²\]: a motor without a gear, or one whose ratio
-/// is not known and stands as 1, may have that itself.
+/// Largest rotor inertia at the joint \[kg m²\]; a motor without a gear, or with the ratio 1 for an
+/// unknown one, may have it at the motor side.
 const LARGEST_AT_JOINT: f64 = 1000.0;
 
-/// One motor with its gear for each joint.
+/// One motor with its gear per joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motors {
     /// Gear ratio: motor turns per turn of the joint.
     pub ratio: Vec<f64>,
     /// Torque constant, motor side \[Nm per A rms\].
     pub torque_constant: Option<Vec<f64>>,
-    /// Inertia of the rotor, motor side \[kg m²\].
+    /// Rotor inertia, motor side \[kg m²\].
     pub rotor_inertia: Vec<f64>,
     /// Copper loss per squared torque at the joint \[W/(Nm)²\].
     pub loss_constant: Vec<f64>,
     /// Largest current \[A rms\].
     pub peak_current: Option<Vec<f64>>,
-    /// Current that may flow for ever \[A rms\].
+    /// Largest continuous current \[A rms\].
     pub rated_current: Option<Vec<f64>>,
 }
 
 impl Motors {
-    /// Inertia of the rotor of joint `joint` (from 0) seen at the joint \[kg m²\].
+    /// Rotor inertia of `joint` (from 0) reflected to the joint \[kg m²\].
     #[must_use]
     pub fn reflected_inertia(&self, joint: usize) -> f64 {
         self.ratio[joint] * self.ratio[joint] * self.rotor_inertia[joint]

@@ -1,28 +1,28 @@
-//! Robot names as people and controllers write them.
+//! Robot names in common spellings.
 //!
-//! `IRB 1600-10/1.45`, `irb1600_10_145` and the controller's `ROB1_1600_1.45_10`
-//! are one robot: a type, and a payload and a reach, of which one may be missing.
+//! `IRB 1600-10/1.45`, `irb1600_10_145` and `ROB1_1600_1.45_10` of a controller are one robot: a
+//! type with payload and reach, one of which may be missing.
 
 use strsim::osa_distance;
 
-/// Largest share of letters that may differ in a suggestion.
+/// Largest share of different letters in a suggestion.
 const NEAR: f64 = 0.5;
 
-/// How well a name as asked for fits a full one.
+/// Quality of the match of a requested name with a full one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Fit {
-    /// The reach agrees when rounded to the digits asked for.
+    /// The reach matches when rounded to the requested digits.
     Rounded,
-    /// What is asked for agrees, but it is not all.
+    /// The requested parts match, but are incomplete.
     Part,
     /// The full name.
     Whole,
 }
 
-/// Names of series beside their numbers.
+/// Series names and their numbers.
 const SERIES: [(&str, &str); 2] = [("gofa", "15000"), ("yumi", "14000")];
 
-/// What a name says.
+/// The parts of a name.
 #[derive(Debug, PartialEq)]
 pub(super) struct Name {
     /// `1600`, `2600id`, `6650s`.
@@ -34,7 +34,7 @@ pub(super) struct Name {
 }
 
 impl Name {
-    /// Reads a name; any text has a reading.
+    /// Parses a name; every text is accepted.
     pub(super) fn parse(text: &str) -> Name {
         let mut lower = text.trim().to_lowercase();
         for (series, number) in SERIES {
@@ -54,13 +54,13 @@ impl Name {
             if token.parse::<f64>().is_ok_and(f64::is_finite) {
                 numbers.push(token.to_owned());
             } else if token == "type" {
-                // `Type C` is the generation of the cast parts.
+                // `Type C` is a generation of castings.
                 tokens.next();
             } else if !token.starts_with("type") {
                 words.push(token.to_owned());
             }
         }
-        // `1_5_037` is 1.5 kg and 0.37 m in the name of a file.
+        // In a file name `1_5_037` means 1.5 kg and 0.37 m.
         if let [whole, decimals, _] = numbers.as_slice()
             && !decimals.starts_with('0')
         {
@@ -75,18 +75,18 @@ impl Name {
         &self.kind
     }
 
-    /// Type and figures in the order of a full name.
+    /// Type and numbers in the order of a full name.
     pub(super) fn written(&self) -> String {
         format!("irb{} {}", self.kind, self.numbers.join(" "))
     }
 
-    /// The same with the figures turned round, as controllers have them.
+    /// The same with reversed numbers, as in controllers.
     pub(super) fn reversed(&self) -> String {
         let numbers: Vec<&str> = self.numbers.iter().rev().map(String::as_str).collect();
         format!("irb{} {}", self.kind, numbers.join(" "))
     }
 
-    /// How `self`, as asked for, fits the full name `full`, if it does.
+    /// Match of this requested name with the full name `full`, if any.
     pub(super) fn fit(&self, full: &Name) -> Option<Fit> {
         if self.kind != full.kind || self.words != full.words {
             return None;
@@ -114,18 +114,18 @@ impl Name {
     }
 }
 
-/// The type among the names that is nearest to the one asked for, if one is near.
+/// The known type most similar to the requested one, if similar enough.
 pub(super) fn nearest_kind(asked: &Name, known: impl Iterator<Item = Name>) -> Option<String> {
     let kinds: Vec<String> = known.map(|name| name.kind).collect();
     nearest(&asked.kind, kinds.iter().map(String::as_str)).map(str::to_owned)
 }
 
-/// Letters to insert, delete, replace or exchange with their neighbour to make one name the other.
+/// Optimal string alignment distance of the compact names.
 pub(super) fn distance(a: &str, b: &str) -> usize {
     osa_distance(&compact(a), &compact(b))
 }
 
-/// The name among `known` that is nearest to `text`, if one is near.
+/// The known name most similar to `text`, if similar enough.
 pub fn nearest<'a>(text: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let (distance, name) =
         known.map(|name| (distance(text, name), name)).min_by_key(|(distance, _)| *distance)?;
@@ -133,7 +133,7 @@ pub fn nearest<'a>(text: &str, known: impl Iterator<Item = &'a str>) -> Option<&
     (distance as f64 <= NEAR * longest as f64).then_some(name)
 }
 
-/// `rob1`, `rob2` …, as controllers begin a robot's type.
+/// `rob1`, `rob2` …, the prefix of robot types in controllers.
 fn is_mechanical_unit(token: &str) -> bool {
     token.strip_prefix("rob").is_some_and(|rest| rest.chars().all(|c| c.is_ascii_digit()))
 }
@@ -146,14 +146,14 @@ fn same_reach(asked: &str, known: &str) -> bool {
     reach(asked).is_some_and(|r| Some(r) == reach(known))
 }
 
-/// Whether the known reach, rounded to the decimals that were asked for, is the one
-/// asked for: ABB calls the 0.58 m of an IRB120 0.6 m.
+/// Whether the known reach, rounded to the requested decimals, equals the requested one: ABB states
+/// 0.6 m for the 0.58 m of an IRB120.
 fn rounds_to(known: &str, asked: &str) -> bool {
     let Some((_, decimals)) = asked.split_once('.') else { return false };
     known.parse::<f64>().is_ok_and(|reach| format!("{reach:.*}", decimals.len()) == asked)
 }
 
-/// Reach in tenths of a millimetre, of `1.45`, `145`, `058` or `0475`.
+/// Reach in tenths of a millimetre from `1.45`, `145`, `058` or `0475`.
 fn reach(text: &str) -> Option<i64> {
     let metres = if text.contains('.') {
         text.parse::<f64>().ok()?

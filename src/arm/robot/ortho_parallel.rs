@@ -1,4 +1,4 @@
-//! Finding the OPW form of a chain that is given joint by joint.
+//! Recognises the OPW form of a chain given joint by joint.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -6,13 +6,12 @@ use nalgebra::{Isometry3, Rotation3, Unit, UnitQuaternion, Vector3};
 
 use super::geometry::{Joint, OffsetWrist, Opw};
 
-/// Largest difference of the two chains \[m\] and \[rad\]; a URDF rounds its numbers.
+/// Largest difference of the two chains \[m\] and \[rad\]; URDF numbers are rounded.
 const SAME: f64 = 1e-6;
 
 /// The OPW parameters of the chain, if it has that form.
 ///
-/// They are read off the zero pose, and count only when both chains lead to the same
-/// poses.
+/// They are read from the zero pose and accepted only if both chains have the same poses.
 pub(super) fn recognise(joints: &[Joint], flange: &Isometry3<f64>) -> Option<Opw> {
     if joints.len() != 6 {
         return None;
@@ -21,8 +20,7 @@ pub(super) fn recognise(joints: &[Joint], flange: &Isometry3<f64>) -> Option<Opw
     let [z1, y2, y3, z4, y5, z6] = zero.axis;
     let meets = crossing(zero.origin[3], z4, zero.origin[4], y5)?;
 
-    // One of two equal descriptions: each OPW angle of the axes across at most a
-    // quarter turn.
+    // Choose one of two equivalent descriptions: OPW angles of the transverse axes within ±π/2.
     let s1 = z1.z.signum();
     let theta1 = folded((-y2.x).atan2(y2.y));
     let across = Rotation3::from_axis_angle(&Vector3::z_axis(), theta1) * Vector3::y();
@@ -69,8 +67,8 @@ pub(super) fn recognise(joints: &[Joint], flange: &Isometry3<f64>) -> Option<Opw
     is_same(&found, joints, flange).then_some(found)
 }
 
-/// The arm up to axis 5, if it has that form with another axis 6: one through the crossing
-/// of axes 4 and 5, at a right angle to axis 5.
+/// The arm up to axis 5, if it has OPW form with an axis 6 through the intersection of axes 4 and 5
+/// at a right angle to axis 5.
 pub(super) fn offset_wrist(joints: &[Joint]) -> Option<OffsetWrist> {
     let [_, _, _, fourth, fifth, _] = joints else { return None };
     // Both axes in the frame of joint 5, at angle 0.
@@ -90,7 +88,7 @@ pub(super) fn offset_wrist(joints: &[Joint]) -> Option<OffsetWrist> {
     Some(OffsetWrist { arm, crossing: Isometry3::from_parts(crossing.into(), flange.rotation) })
 }
 
-/// The axes of the joints and the flange in the base frame.
+/// Joint axes and flange in the base frame.
 struct Lines {
     origin: [Vector3<f64>; 6],
     axis: [Vector3<f64>; 6],
@@ -115,7 +113,7 @@ impl Lines {
     }
 }
 
-/// The point of the second line that is nearest to the first; parallel lines have none.
+/// The point of the second line nearest to the first; `None` for parallel lines.
 fn crossing(
     p: Vector3<f64>,
     u: Vector3<f64>,
@@ -128,12 +126,12 @@ fn crossing(
     (across > SAME).then(|| r + v * ((cos * between.dot(&u) - between.dot(&v)) / across))
 }
 
-/// The point of the line that lies in the plane of the arm.
+/// The intersection of a line with the plane of the arm.
 fn on_plane(point: Vector3<f64>, along: Vector3<f64>, normal: Vector3<f64>) -> Vector3<f64> {
     point - along * (point.dot(&normal) / along.dot(&normal))
 }
 
-/// The angle, turned by half a turn into −π/2 … π/2.
+/// The angle shifted by ±π into −π/2 … π/2.
 fn folded(angle: f64) -> f64 {
     if angle > FRAC_PI_2 {
         angle - PI

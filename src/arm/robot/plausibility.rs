@@ -1,21 +1,21 @@
-//! Values that no robot has, most often because of wrong units.
+//! Implausible values of a robot, usually due to wrong units.
 
 use super::fields::is_endless;
 use super::link::Link;
 use super::model::Model;
 
-/// Speed that no joint of an arm reaches \[rad/s\].
+/// Joint speed that no arm reaches \[rad/s\].
 const FASTEST: f64 = 30.0;
-/// Time in which no joint reaches its speed \[s\].
+/// Shortest time to full joint speed \[s\].
 const QUICKEST: f64 = 0.01;
-/// Acceleration that no joint of unknown speed has \[rad/s²\].
+/// Largest acceleration of a joint of unknown speed \[rad/s²\].
 const HARDEST: f64 = 500.0;
-/// Bound of a joint that is neither endless nor the last \[rad\].
+/// Largest bound of a joint that is neither endless nor the last \[rad\].
 const FARTHEST_TURN: f64 = 13.0;
-/// Length of the longest chain of joints \[m\].
+/// Longest chain of joints \[m\].
 const LONGEST: f64 = 10.0;
 
-/// Messages about the implausible values of a robot, each with a remedy.
+/// Messages about implausible values of a robot, each with a remedy.
 #[must_use]
 pub fn implausible(model: &Model) -> Vec<String> {
     let mut found = Vec::new();

@@ -1,21 +1,21 @@
-//! Accelerations of the first three axes that depend on where the arm is.
+//! Pose-dependent accelerations of the first three axes.
 //!
-//! In a pose each axis alone can have the acceleration that uses up its drive: I(q) q̈ + g(q) = ±1.
-//! For a serial arm with axis 1 upright and axes 2 and 3 parallel across it the inertias over the
-//! drive's torque are, with s₂ = sin q₂, s₂₃ = sin(q₂+q₃) and so on,
+//! In each pose one axis alone can have the acceleration at its drive limit: I(q) q̈ + g(q) = ±1.
+//! For a serial arm with a vertical axis 1 and parallel transverse axes 2 and 3 the inertias over
+//! the drive torque are, with s₂ = sin q₂, s₂₃ = sin(q₂+q₃) etc.,
 //!
 //! I₁ = a₁ + a₂ s₂² + a₃ s₂ + a₄ c₂₃ + a₅ s₂₃ + a₆ cos 2(q₂+q₃) + a₇ sin 2(q₂+q₃)
 //!      + a₈ s₂ c₂₃ + a₉ s₂ s₂₃,
 //! I₂ = b₁ + b₂ c₃ + b₃ s₃,  I₃ = c₁,  g₃ = c₂ c₂₃ + c₃ s₂₃,
 //!
-//! the form of the moments of inertia of two rigid links in any position, and of the weight of the
-//! outer one. The weight of both on axis 2 is balanced by springs.
+//! the general form of the inertias of two rigid links and of the gravity torque of the outer one.
+//! Springs balance the gravity torque of axis 2.
 
 use super::error::RobotError;
 use super::fields::{Accepts, Fields};
 use super::provenance::Origin;
 
-/// Coefficients of the formulas in the module's text; s²/rad, the last two of axis 3 without unit.
+/// Coefficients of these formulas; s²/rad, the last two of axis 3 without unit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoseAcceleration {
     /// a₁ … a₉.
@@ -26,20 +26,20 @@ pub struct PoseAcceleration {
     pub axis_3: [f64; 3],
 }
 
-/// Acceleration of an axis in a pose.
+/// Acceleration capability of an axis in a pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capability {
-    /// Largest acceleration without weight \[rad/s²\].
+    /// Largest acceleration without gravity \[rad/s²\].
     pub acceleration: f64,
-    /// Share of the drive's torque that the weight takes, with its sign.
+    /// Signed share of gravity in the drive torque.
     pub weight: f64,
 }
 
-/// Least inertia over torque of a formula \[s²/rad\]: what lies below is outside of its range.
+/// Smallest valid inertia over torque of a formula \[s²/rad\].
 const LEAST: f64 = 1e-3;
 
 impl PoseAcceleration {
-    /// The capabilities of axes 1 to 3 at the joints `q` \[rad\].
+    /// The capabilities of axes 1 to 3 at the joint angles `q` \[rad\].
     #[must_use]
     pub fn at(&self, q: &[f64]) -> [Capability; 3] {
         let (q2, q3) = (q[1], q[2]);

@@ -1,8 +1,8 @@
-//! Where a number comes from.
+//! Origins of numbers.
 
 use std::fmt;
 
-/// How a number is known.
+/// Kind of origin of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Provenance {
     /// Published by the maker.
@@ -11,9 +11,9 @@ pub enum Provenance {
     Identified,
     /// Taken from a paper.
     Paper,
-    /// Follows from what is known of the robot, with a spread.
+    /// Estimated from known properties of the robot, with a standard deviation.
     Estimated,
-    /// Chosen by us because nothing is published; reports list it.
+    /// Chosen without a published source; reports list it.
     Assumed,
 }
 
@@ -46,16 +46,16 @@ pub struct Origin {
     pub table: String,
     /// Its key, such as `torque`.
     pub key: String,
-    /// How it is known; `None` where the file does not say.
+    /// Its provenance, if stated.
     pub provenance: Option<Provenance>,
-    /// The source; `None` where the file does not say.
+    /// Its source, if stated.
     pub source: Option<String>,
-    /// Standard deviation of each number, in its unit, or one for all; `None` where the file states none.
+    /// Standard deviation of each number, in its unit, or one for all, if stated.
     pub sd: Option<Vec<f64>>,
 }
 
-/// The origins of a provenance as sentences, one for each run of keys that share a
-/// table and a source.
+/// The origins of one provenance as sentences, one per sequence of keys with the same table and
+/// source.
 pub(super) fn sentences(origins: &[Origin], provenance: Provenance) -> Vec<String> {
     let mut sentences: Vec<String> = Vec::new();
     let mut last: Option<(&Origin, String)> = None;

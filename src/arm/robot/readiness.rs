@@ -1,4 +1,4 @@
-//! What a robot still lacks for each command.
+//! Missing data of a robot per command.
 
 use std::fmt;
 
@@ -6,25 +6,25 @@ use thiserror::Error;
 
 use super::model::Model;
 
-/// Joints of the robots that RAPID programs are run for.
+/// Number of joints of robots for RAPID programs.
 const RAPID_JOINTS: usize = 6;
 
-/// What a robot is used for.
+/// Use of a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Use {
-    /// Running programs on the virtual controller.
+    /// Simulation on the virtual controller.
     Simulate,
-    /// Rewriting programs.
+    /// Optimisation of programs.
     Optimize,
     /// Power at rest.
     Standstill,
-    /// Designing an excitation.
+    /// Design of an excitation trajectory.
     Excite,
-    /// Identifying the dynamics.
+    /// Identification of the dynamics.
     Identify,
-    /// Torques of a logged motion.
+    /// Torque prediction of a logged motion.
     Predict,
-    /// Finding what a model lacks.
+    /// Diagnosis of missing model terms.
     Diagnose,
 }
 
@@ -55,7 +55,7 @@ impl fmt::Display for Use {
     }
 }
 
-/// Something that a robot lacks.
+/// Missing data of a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lack {
     /// It has fewer or more than six joints.
@@ -64,9 +64,9 @@ pub enum Lack {
     Bodies,
     /// Largest speeds of the joints.
     Speeds,
-    /// Their largest accelerations.
+    /// Largest joint accelerations.
     Accelerations,
-    /// Their largest torques.
+    /// Largest joint torques.
     Torques,
     /// Motors and gears.
     Motors,
@@ -75,7 +75,7 @@ pub enum Lack {
 }
 
 impl fmt::Display for Lack {
-    /// In words, with the keys of a robot file that mend it.
+    /// In words, with the keys of the robot file.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Lack::SixJoints => "6 joints",
@@ -89,11 +89,11 @@ impl fmt::Display for Lack {
     }
 }
 
-/// What the robot lacks for one use; nothing where it can be used.
+/// The missing data for one use; empty if the robot is ready.
 #[must_use]
 pub fn lacking(model: &Model, purpose: Use) -> Vec<Lack> {
     let needs: &[Lack] = match purpose {
-        // Accelerations are assumed where there are none.
+        // Missing accelerations are assumed.
         Use::Simulate => &[Lack::SixJoints, Lack::Speeds],
         Use::Excite => &[Lack::SixJoints, Lack::Speeds, Lack::Accelerations],
         Use::Optimize => &[
@@ -127,7 +127,7 @@ fn lacks(model: &Model, what: Lack) -> bool {
     }
 }
 
-/// A robot that can't be used for something.
+/// A robot that is not ready for a use.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum NotReady {
     /// Another number of joints.
@@ -137,9 +137,9 @@ pub enum NotReady {
     Joints {
         /// The robot.
         robot: String,
-        /// Its joints.
+        /// Its number of joints.
         joints: usize,
-        /// What for.
+        /// The use.
         purpose: Use,
     },
     /// Missing figures.
@@ -151,19 +151,19 @@ pub enum NotReady {
     Figures {
         /// The robot.
         robot: String,
-        /// Its file, or its name where it is one of the catalogue.
+        /// Its file, or its name in the catalogue.
         base: String,
-        /// What it lacks.
+        /// The missing data.
         lacks: Vec<Lack>,
-        /// What for.
+        /// The use.
         purpose: Use,
     },
 }
 
-/// Whether the robot has all that one use needs.
+/// Checks that the robot has all data for one use.
 ///
 /// # Errors
-/// What is missing, and how it can be given.
+/// The missing data, and how to provide it.
 pub fn ready(model: &Model, purpose: Use) -> Result<(), NotReady> {
     let lacks = lacking(model, purpose);
     let robot = model.name.clone();

@@ -1,19 +1,18 @@
-//! Errors of the logged positions and torques.
+//! Errors of logged positions and torques.
 
-/// Differences between logged and true values that a diagnosis found.
+/// Diagnosed differences between logged and true values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sensors {
     /// True minus logged position of each joint \[rad\].
     pub position_offset: Vec<f64>,
-    /// Added to the logged torque of each joint \[Nm\].
+    /// Offset of the logged torque of each joint \[Nm\].
     pub torque_offset: Vec<f64>,
     /// Logged over true torque of each joint, minus 1.
     pub torque_error: Vec<f64>,
-    /// Added to the logged torque for each unit of acceleration of the motor that turns with
-    /// the joint \[kg m², at the joint\]: delays, filters and elasticity look like an inertia
-    /// below 0, which no rotor has.
+    /// Addition to the logged torque per motor acceleration at the joint \[kg m²\]: delays, filters
+    /// and elasticity act like an inertia, which may be negative.
     pub apparent_inertia: Vec<f64>,
-    /// The same for each unit of its rate \[Nm s/rad\].
+    /// The same per motor speed \[Nm s/rad\].
     pub apparent_viscous: Vec<f64>,
 }
 

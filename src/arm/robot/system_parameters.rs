@@ -1,11 +1,11 @@
-//! A controller's system parameters: `SYS.cfg`, `MOC.cfg` and the others of `SYSPAR`.
+//! System parameters of a controller: `SYS.cfg`, `MOC.cfg` and other files of `SYSPAR`.
 //!
 //! Sections begin with `NAME:` and end with `#`; an entry is a list of `-key value`, where a
 //! flag has no value and `\` at the end of a line continues it.
 
 use std::collections::BTreeMap;
 
-/// One entry: values by lower-case key, each with its line; a flag's value is empty.
+/// One entry: values by lower-case key, each with its line; the value of a flag is empty.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Entry {
     line: usize,
@@ -14,32 +14,32 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// The value of a key, written in lower case.
+    /// The value of a lower-case key.
     pub fn get(&self, key: &str) -> Option<&String> {
         self.values.get(key).map(|(value, _)| value)
     }
 
-    /// Whether the key is there.
+    /// Whether the key is present.
     pub fn contains_key(&self, key: &str) -> bool {
         self.values.contains_key(key)
     }
 
-    /// The keys that are there, sorted.
+    /// The keys, sorted.
     pub fn keys(&self) -> impl Iterator<Item = &str> {
         self.values.keys().map(String::as_str)
     }
 
-    /// The line of the key, from 1; of the entry where it is not there.
+    /// The line of the key, from 1; of the entry if it is missing.
     pub fn line_of(&self, key: &str) -> usize {
         self.values.get(key).map_or(self.line, |(_, line)| *line)
     }
 
-    /// The first key that is there twice, with the line of the second; the first value holds.
+    /// The first repeated key, with the line of its repetition; the first value holds.
     pub fn repeated(&self) -> Option<(&str, usize)> {
         self.repeated.as_ref().map(|(key, line)| (key.as_str(), *line))
     }
 
-    /// Reads a line of the entry; `open` is the key that still waits for its value.
+    /// Reads a line of the entry; `open` is a key without its value yet.
     fn read(&mut self, text: &str, line: usize, open: &mut Option<String>) {
         let mut rest = text.trim_start();
         while !rest.is_empty() {
@@ -51,7 +51,7 @@ impl Entry {
                 (word, after, false)
             };
             rest = after.trim_start();
-            // A number may be negative, a key never begins with a digit or a point.
+            // A number may be negative; a key starts with a letter.
             let name = word.strip_prefix('-').filter(|name| name.starts_with(char::is_alphabetic));
             match (name, quoted) {
                 (Some(name), false) => {
@@ -74,7 +74,7 @@ impl Entry {
     }
 }
 
-/// The entries of a section, whose name is compared without case.
+/// The entries of a section; its name is not case-sensitive.
 pub fn section(text: &str, name: &str) -> Vec<Entry> {
     let mut entries = Vec::new();
     let mut inside = false;
@@ -101,9 +101,8 @@ pub fn section(text: &str, name: &str) -> Vec<Entry> {
     entries
 }
 
-/// The line at which the file breaks off, and how it can be told, if it does. A
-/// controller ends every line, closes every quote, continues no last line and names no
-/// section without writing it.
+/// The line at which the file is truncated, and the evidence, if it is. A controller ends each
+/// line, closes each quote, continues no last line and writes each section that it names.
 pub fn break_off(text: &str) -> Option<(usize, &'static str)> {
     let last = text.lines().count();
     let open = text.lines().position(|line| line.matches('"').count() % 2 == 1);

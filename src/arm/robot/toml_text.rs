@@ -1,19 +1,19 @@
-//! Values as TOML writes them.
+//! Values in TOML notation.
 
 use std::fmt::Write;
 
 use nalgebra::Isometry3;
 
-/// Below this cosine the pitch is a quarter turn, and roll and yaw are one angle.
+/// Cosine of the pitch below which it is ±π/2 and only the sum of roll and yaw is defined.
 const UPRIGHT: f64 = 1e-9;
 
-/// A number in the shortest form that reads back as the same.
+/// The shortest text of a number that reads back exactly.
 pub(super) fn number(value: f64) -> String {
-    // Adding 0 takes the sign off a zero.
+    // Adding 0 removes the sign of −0.
     format!("{:?}", value + 0.0)
 }
 
-/// Numbers in that form.
+/// A list of numbers in that form.
 pub(super) fn list(values: &[f64]) -> String {
     let values: Vec<String> = values.iter().map(|value| number(*value)).collect();
     format!("[{}]", values.join(", "))

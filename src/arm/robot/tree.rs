@@ -1,5 +1,4 @@
-//! A TOML document as a tree whose values know their line and their origin,
-//! and the overlay of one such tree on another.
+//! A TOML document as a tree of values with line and origin, and the overlay of such trees.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -11,10 +10,10 @@ use toml::de::{DeTable, DeValue};
 use super::error::RobotError;
 use super::provenance::Provenance;
 
-/// Depth of nesting that a robot file may have; the format itself needs four.
+/// Largest depth of nesting in a robot file; the format needs four.
 const MAX_DEPTH: usize = 16;
 
-/// Alternative keys of one quantity: a key of an overlay replaces its alternative, too.
+/// Alternative keys of one quantity: a key of an overlay also replaces its alternative.
 const ALTERNATIVES: [[&str; 2]; 1] = [["loss_constant", "resistance"]];
 
 /// A line of a file.
@@ -30,12 +29,12 @@ impl fmt::Display for Place {
     }
 }
 
-/// What the keys `source` and `provenance` around a value say of it.
+/// The values of `source`, `provenance` and `sd` for a value.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Stated {
     pub(super) provenance: Option<Provenance>,
     pub(super) source: Option<String>,
-    /// Of the value itself, not of what lies in it.
+    /// Only for the value itself, not for nested values.
     pub(super) sd: Option<Vec<f64>>,
 }
 
@@ -54,7 +53,7 @@ pub(super) enum Value {
     Text(String),
     List(Vec<Node>),
     Table(BTreeMap<String, Node>),
-    /// A type that no key of a robot has, in words.
+    /// An unsupported type, in words.
     Other(&'static str),
 }
 
@@ -81,8 +80,7 @@ pub(super) fn parse(file: &str, text: &str) -> Result<Node, RobotError> {
     builder.table(builder.place(0), table.get_ref(), &Stated::default(), 0)
 }
 
-/// `over` laid on `base`: tables are merged key by key, everything else is
-/// replaced together with its origin.
+/// `over` on `base`: tables are merged by key, other values are replaced with their origins.
 pub(super) fn overlay(base: Node, over: Node) -> Node {
     match (base.value, over.value) {
         (Value::Table(mut below), Value::Table(above)) => {
@@ -106,7 +104,7 @@ pub(super) fn overlay(base: Node, over: Node) -> Node {
     }
 }
 
-/// A robot that others extend: its type is theirs.
+/// Adds the name of a robot as the type of the robots that extend it.
 pub(super) fn with_type(mut base: Node) -> Node {
     if let Value::Table(entries) = &mut base.value
         && let Some(name) = entries.get("name").cloned()
@@ -194,7 +192,7 @@ impl Builder<'_> {
         Ok(stated)
     }
 
-    /// The standard deviations of a value of so many numbers: one, or one for each.
+    /// The standard deviations of a value: one, or one per number.
     fn deviations(
         &self,
         key: &str,
@@ -289,7 +287,7 @@ impl Builder<'_> {
     }
 }
 
-/// How many numbers a value has.
+/// Number of numbers in a value.
 fn count(value: &DeValue<'_>) -> usize {
     match value {
         DeValue::Integer(_) | DeValue::Float(_) => 1,

@@ -1,14 +1,13 @@
-//! Coupling of the wrist's gears.
+//! Coupling of the wrist gears.
 
 use super::error::RobotError;
 use super::fields::{Accepts, Fields};
 use super::provenance::Origin;
 
-/// How the motors of the wrist turn with its axes.
+/// Relation of wrist motors and wrist axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wrist {
-    /// Turns of the gear of axis 6 for one turn of axis 5 while axis 6 stands
-    /// still; 0 without coupling.
+    /// Turns of the gear of axis 6 per turn of axis 5 with axis 6 at rest; 0 without coupling.
     pub coupling: f64,
 }
 

@@ -1,4 +1,4 @@
-//! A model as Robot TOML, complete in itself, each number with its origin.
+//! A model as complete Robot TOML with the origin of each number.
 
 use std::fmt::Write;
 
@@ -11,7 +11,7 @@ use super::model::Model;
 use super::provenance::{Origin, Provenance};
 use super::toml_text::{list, number, pose_entries, quoted};
 
-/// The text of a model; reading it gives the same one.
+/// The text of a model; reading it returns the same model.
 #[must_use]
 pub fn to_toml(model: &Model) -> String {
     let mut out = Writer { origins: &model.origins, text: String::new() };
@@ -62,7 +62,7 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    /// A table with its entries; an origin that all share stands once.
+    /// A table with its entries; a common origin is written once.
     fn table(&mut self, header: &str, name: &str, entries: &[(&str, String)]) {
         let origins = self.origins;
         let origin = |key: &str| {
@@ -106,7 +106,7 @@ fn geometry(model: &Model, out: &mut Writer<'_>) {
     if geometry.base != Isometry3::identity() {
         out.table("[kinematics.base]", "kinematics.base", &pose_entries(&geometry.base));
     }
-    // An OPW form that was recognised in a chain has rounding errors, the chain has none.
+    // An OPW form recognised in a chain has rounding errors: then the chain is written.
     let as_opw = geometry.opw.as_ref().filter(|opw| {
         let (joints, flange) = opw.chain();
         joints == geometry.joints && flange == geometry.flange
@@ -210,7 +210,7 @@ fn effects(model: &Model, out: &mut Writer<'_>) {
             .collect();
         out.table(&format!("[{table}]"), &table, &entries);
     }
-    // Those of the log are in the model's numbers.
+    // Errors of the log are in `sensors`.
     let sensors = &model.sensors;
     let (inertia, viscous) = (&sensors.apparent_inertia, &sensors.apparent_viscous);
     for (id, parameters) in [
@@ -255,7 +255,7 @@ fn power(model: &Model, out: &mut Writer<'_>) {
             ("engage_s", brakes.engage_s),
             ("power_released_w", brakes.power_released_w),
         ];
-        // A 0 that nobody stated is one that is to be estimated.
+        // An unstated 0 is omitted, so that it is estimated on reading.
         let stated = entries.iter().filter(|(key, value)| *value != 0.0 || has(key));
         let entries: Vec<_> = stated.map(|(key, value)| (*key, number(*value))).collect();
         out.table("[brakes]", "brakes", &entries);

@@ -1,4 +1,4 @@
-//! The energy of a simulation, by movement and by wait.
+//! The energy of a simulation per movement and per wait.
 
 use rayon::prelude::*;
 
@@ -9,13 +9,12 @@ use crate::arm::robot::Model;
 use crate::retime::motion::timeline::{Event, Run, Simulation, What};
 use crate::retime::path::joint_path::Joints;
 
-/// Joules of a simulation.
+/// Energies of a simulation.
 #[derive(Clone, Debug)]
 pub struct Account {
-    /// All together.
+    /// Sum over all events.
     pub total: EnergyParts,
-    /// For each event of the simulation, and in it for each movement of a run (one entry for
-    /// other events).
+    /// Per event and, within a run, per movement (other events have one entry).
     pub events: Vec<Vec<EnergyParts>>,
 }
 
@@ -34,7 +33,7 @@ pub fn account(model: &Model, simulation: &Simulation) -> Account {
     Account { total, events }
 }
 
-/// The energy of a run by movement.
+/// The energy of a run per movement.
 pub fn run_energy(model: &Model, run: &Run) -> Vec<EnergyParts> {
     let last = run.moves.len().saturating_sub(1);
     let moves = run.moves.par_iter().enumerate().map(|(i, record)| {
@@ -56,7 +55,7 @@ pub fn run_energy(model: &Model, run: &Run) -> Vec<EnergyParts> {
     moves.collect()
 }
 
-/// Standing still with open brakes.
+/// Energy of a robot at rest with released brakes.
 pub fn at_rest(model: &Model, load: &Load, q: &Joints, duration: f64) -> EnergyParts {
     let holding: f64 = holding_w(model, load, q).iter().sum();
     let mut parts = base(model, duration);
@@ -64,7 +63,7 @@ pub fn at_rest(model: &Model, load: &Load, q: &Joints, duration: f64) -> EnergyP
     parts
 }
 
-/// Base power and open brakes.
+/// Energy of base power and released brakes.
 pub fn base(model: &Model, duration: f64) -> EnergyParts {
     EnergyParts {
         idle_j: model.drive.base_w * duration,

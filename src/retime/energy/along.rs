@@ -1,7 +1,7 @@
-//! The power of a motion, instant by instant, as a function of the robot.
+//! The power at instants of a motion as a function of the robot.
 //!
-//! Torques are linear in the robot's parameters (see [`moments`](super::moments)), so that the power at
-//! an instant and its slopes are closed forms.
+//! Torques are linear in the parameters of the robot (see [`moments`](super::moments)), so power at
+//! an instant and its derivatives have closed forms.
 
 use std::ops::Range;
 
@@ -18,14 +18,14 @@ use crate::retime::path::joint_path::Joints;
 /// A state of the robot with its load.
 #[derive(Clone, Debug)]
 pub struct Instant {
-    /// What the flange carries.
+    /// Tool and payload at the flange.
     pub load: Load,
     /// Position \[rad\], velocity \[rad/s\], acceleration \[rad/s²\].
     pub state: [Joints; 3],
 }
 
 impl Instant {
-    /// Standing still.
+    /// The robot at rest.
     #[must_use]
     pub fn rest(load: &Load, q: &Joints) -> Instant {
         Instant { load: load.clone(), state: [*q, [0.0; 6], [0.0; 6]] }
@@ -36,19 +36,19 @@ impl Instant {
     }
 }
 
-/// Instants whose mean power and torques are asked for, in windows.
+/// Instants and windows over which power and torques are averaged.
 pub struct Along<'a> {
     model: &'a Model,
     windows: Vec<Range<usize>>,
-    /// Features of each joint, a row for each instant.
+    /// Features of each joint, one row per instant.
     features: Vec<DMatrix<f64>>,
     rates: Vec<Joints>,
     rests: Vec<bool>,
-    /// Power of the model besides the terms of [`Along::terms`] \[W\].
+    /// Power of the model without [`Along::terms`] \[W\].
     rest_w: Vec<f64>,
 }
 
-/// Derivatives of the parameter differences by the latent numbers.
+/// Derivatives of the parameter differences by the latent variables.
 pub struct Slopes {
     joints: Vec<DMatrix<f64>>,
     loss: DMatrix<f64>,
@@ -57,17 +57,17 @@ pub struct Slopes {
 
 /// Means over the windows.
 pub struct Means {
-    /// W.
+    /// Power, W.
     pub power: DVector<f64>,
-    /// By joint, while it moves \[Nm\].
+    /// Torque of each joint \[Nm\].
     pub torque: Vec<DVector<f64>>,
 }
 
-/// Step of a latent number for its slope: the functions are smooth.
+/// Step of a latent variable in a central difference.
 const STEP: f64 = 1e-3;
 
 impl Slopes {
-    /// At the latent numbers `z`.
+    /// The derivatives at the latent variables `z`.
     pub fn at(model: &Model, spread: &Spread, z: &[f64]) -> Slopes {
         let count = spread.latents.len();
         let mut slopes = Slopes {
@@ -97,7 +97,7 @@ impl Slopes {
 }
 
 impl<'a> Along<'a> {
-    /// Features of the instants; each window is a range of them.
+    /// Evaluates the features at the instants; each window is a range of them.
     pub fn new(model: &'a Model, instants: &[Instant], windows: Vec<Range<usize>>) -> Along<'a> {
         let mut data = Data::new();
         let mut regressor = Regressor::new();
@@ -126,12 +126,12 @@ impl<'a> Along<'a> {
         along
     }
 
-    /// Torques by joint: a row for each instant, a column for each robot \[Nm\].
+    /// Torques of each joint: one row per instant, one column per robot \[Nm\].
     pub fn torques(&self, robots: &Changes) -> Vec<DMatrix<f64>> {
         self.features.iter().zip(&robots.joints).map(|(phi, of)| phi * &of.values).collect()
     }
 
-    /// Power of each instant from copper, work and braking \[W\], and torques by joint \[Nm\].
+    /// Power of work, copper and braking loss per instant \[W\]; torques per joint \[Nm\].
     fn terms(&self, robot: &Changes) -> (Vec<f64>, Vec<DMatrix<f64>>) {
         let torques = self.torques(robot);
         let terms = (0..self.rates.len()).map(|i| {
@@ -169,7 +169,7 @@ impl<'a> Along<'a> {
         Means { power: DVector::from_iterator(self.windows.len(), power), torque: torque.collect() }
     }
 
-    /// Slopes of the mean powers by the latent numbers, a row for each window.
+    /// Derivatives of the mean powers by the latent variables, one row per window.
     pub fn power_slopes(&self, robot: &Changes, slopes: &Slopes) -> DMatrix<f64> {
         let torques = self.torques(robot);
         let left = 1.0 - self.model.drive.regeneration;
@@ -204,7 +204,7 @@ impl<'a> Along<'a> {
         by_power
     }
 
-    /// The same of the mean torques of each joint.
+    /// Derivatives of the mean torques of each joint, one row per window.
     pub fn torque_slopes<'s>(
         &'s self,
         slopes: &'s Slopes,
@@ -212,7 +212,7 @@ impl<'a> Along<'a> {
         slopes.joints.iter().enumerate().map(|(j, slopes)| self.sums(j, &|_| 1.0) * slopes)
     }
 
-    /// Weighted means of the features of a joint, a row for each window.
+    /// Weighted means of the features of a joint, one row per window.
     fn sums(&self, joint: usize, weight: &dyn Fn(usize) -> f64) -> DMatrix<f64> {
         let phi = &self.features[joint];
         let mut sums = DMatrix::zeros(self.windows.len(), phi.ncols());
@@ -227,7 +227,7 @@ impl<'a> Along<'a> {
         sums
     }
 
-    /// Whether joints move in a window.
+    /// Whether the robot moves at all instants of a window.
     pub fn moves(&self, window: usize) -> bool {
         self.windows[window].clone().all(|i| !self.rests[i])
     }

@@ -1,14 +1,13 @@
-//! Power that closed brakes save while the robot stands.
+//! Energy that closed brakes save at standstill.
 //!
-//! At rest with open brakes a robot takes base power, holding power, and the power of the coils
-//! that keep the brakes open. With closed brakes the base power is left. Break-even after Paes et
-//! al. 2014, figure 7, with the coils besides: the energy of one release over the power that is
-//! spared, plus the time that engaging and releasing take.
+//! At rest with released brakes a robot takes base power, holding power and the power of the brake
+//! coils; with closed brakes only base power. Break-even time: Paes et al. 2014, figure 7, plus the
+//! coils: energy of one release over saved power, plus the engage and release times.
 
 use crate::arm::robot::Model;
 
-/// Break-even time of the brakes, s: the dwell from which closing them saves energy, where holding
-/// takes `holding_w`; `None` where nothing is saved or no brake is known.
+/// Break-even time of the brakes at a holding power of `holding_w`, s: the shortest dwell in which
+/// closing them saves energy. `None` if nothing is saved or no brake is known.
 pub fn break_even_s(model: &Model, holding_w: f64) -> Option<f64> {
     let brakes = model.brakes.as_ref()?;
     let spared_w = holding_w + brakes.power_released_w;
@@ -16,8 +15,8 @@ pub fn break_even_s(model: &Model, holding_w: f64) -> Option<f64> {
     (spared_w > 0.0).then(|| brakes.energy_per_release_j / spared_w + delay)
 }
 
-/// Energy that closing the brakes saves in a dwell of `duration` (s) where holding takes `holding_w`,
-/// J: 0 up to the break-even time, or where no brake is known.
+/// Energy that closed brakes save in a dwell of `duration` (s) at a holding power of `holding_w`,
+/// J; 0 up to the break-even time or without a known brake.
 pub fn spared_j(model: &Model, holding_w: f64, duration: f64) -> f64 {
     let Some(brakes) = &model.brakes else { return 0.0 };
     let spared_w = holding_w + brakes.power_released_w;
@@ -34,7 +33,7 @@ mod tests {
     use crate::retime::energy::account::at_rest;
     use crate::retime::energy::power::holding_w;
 
-    /// The account of a standing robot, with the parts taken away that closed brakes do not need.
+    /// Compares with the energy at rest without the parts that closed brakes save.
     #[test]
     fn closed_brakes_leave_the_base_power() {
         let model = effects::load("IRB1600-10/1.45").unwrap();
@@ -55,7 +54,7 @@ mod tests {
     #[test]
     fn nothing_is_spared_up_to_the_break_even() {
         let model = effects::load("IRB1600-10/1.45").unwrap();
-        // The coils take power where nothing is to be held, too.
+        // The coils take power also without holding power.
         for holding in [0.0, 20.0] {
             let pays_from = break_even_s(&model, holding).unwrap();
             assert_eq!(spared_j(&model, holding, 0.99 * pays_from), 0.0);

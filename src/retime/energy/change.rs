@@ -1,4 +1,4 @@
-//! Parameter differences between plausible robots and the model, for the features of the torques.
+//! Parameter differences of plausible robots from the model, in the order of the features.
 
 use nalgebra::DMatrix;
 
@@ -7,22 +7,22 @@ use crate::arm::dynamics::{RIGID, link_parameters};
 use crate::arm::robot::Model;
 use crate::arm::robot::prior::Plausible;
 
-/// Parameter differences of some robots from the model.
+/// Parameter differences of robots from the model.
 #[derive(Clone, Debug)]
 pub struct Changes {
     pub(super) joints: Vec<JointChanges>,
-    /// By robot, W.
+    /// Base power per robot, W.
     pub(super) base_w: Vec<f64>,
-    /// By robot, W.
+    /// Brake coil power per robot, W.
     pub(super) coils_w: Vec<f64>,
 }
 
 #[derive(Clone, Debug)]
 pub(super) struct JointChanges {
-    /// Parameter differences, one column per robot; the first entry of a column is 1, for the torque of
-    /// the model itself.
+    /// Parameter differences, one column per robot; the first entry is 1, the factor of the
+    /// torque of the model.
     pub(super) values: DMatrix<f64>,
-    /// By robot.
+    /// Loss constant per robot, W/(Nm)².
     pub(super) loss: Vec<f64>,
     pub(super) model_loss: f64,
 }

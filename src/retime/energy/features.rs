@@ -1,4 +1,4 @@
-//! The features in which the torque of each joint is linear.
+//! The features in which the torque of a joint is linear.
 
 use nalgebra::DMatrix;
 
@@ -7,17 +7,17 @@ use crate::arm::dynamics::{
 };
 use crate::arm::robot::{MAX_DOF, Model};
 
-/// Parameters of a joint: rotor, viscous and Coulomb friction, spring.
+/// Number of parameters of a joint: rotor, viscous and Coulomb friction, spring.
 pub(super) const OF_JOINT: usize = 4;
 
-/// Number of features of a joint: the torque of the model, the parameters of the links from the joint
-/// on, those of the joint itself.
+/// Number of features of a joint: torque of the model, parameters of the links from the joint on,
+/// parameters of the joint.
 pub(super) fn count(model: &Model, joint: usize) -> usize {
     1 + RIGID * (model.dof - joint) + OF_JOINT
 }
 
-/// Writes the features of each joint in a state into a row, `[joint][(row, feature)]`, and returns the
-/// model's torques \[Nm\].
+/// Writes the features of each joint in a state into a row, `[joint][(row, feature)]`, and returns
+/// the torques of the model \[Nm\].
 pub(super) fn write(
     model: &Model,
     (data, regressors): (&mut Data, &mut Regressor),

@@ -1,13 +1,13 @@
 //! The robot whose energy is the mean over plausible robots.
 //!
-//! Everything but the copper loss is linear in the parameters: the robot of their means has the mean
-//! energy. The copper loss c τ² is quadratic; its mean along a motion,
+//! All parts except the copper loss are linear in the parameters, so the robot of mean parameters
+//! has their mean. The copper loss c τ² is quadratic; its mean along a motion,
 //!
 //! ```text
 //! ∫ E[c τ²] dt = Σ E[c ΔπΔπᵀ] : ∫ φ φᵀ dt,
 //! ```
 //!
-//! follows from the second moments, and the mean robot's constant c is the one that gives it.
+//! follows from the second moments and determines the loss constant c of the mean robot.
 
 use super::change::Changes;
 use super::moments::Moments;
@@ -18,7 +18,7 @@ use crate::arm::robot::Model;
 use crate::arm::robot::prior::Plausible;
 
 impl Robots {
-    /// The mean robot along a motion; `None` where its effects lead to what no robot has.
+    /// The mean robot along a motion; `None` if its effects are invalid.
     pub fn mean(&self, model: &Model, along: &Moments) -> Option<Model> {
         let robots = &self.draws.robots;
         let mut mean = mean(robots)?;
@@ -35,7 +35,7 @@ impl Robots {
     }
 }
 
-/// Means of all numbers; bodies have the means of their parameters.
+/// Means of all numbers; a link has the mean of its inertial parameters.
 fn mean(robots: &[Plausible]) -> Option<Plausible> {
     let share = 1.0 / robots.len() as f64;
     let one = |value: &dyn Fn(&Plausible) -> f64| robots.iter().map(value).sum::<f64>() * share;

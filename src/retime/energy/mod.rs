@@ -1,8 +1,7 @@
 //! The energy of a cycle by cause, movement and wait.
 //!
-//! Electrical energy is the sum of six parts (docs/energy.md): rigid-body work,
-//! friction, copper loss, drive loss, idle, brakes. The first four are the
-//! motion energy.
+//! Electrical energy is the sum of six parts (docs/energy.md): rigid-body work, friction, copper
+//! loss, drive loss, idle, brakes. The first four are the motion energy.
 
 pub mod account;
 pub mod along;

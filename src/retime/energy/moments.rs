@@ -1,4 +1,4 @@
-//! How the energy of a motion changes with the robot.
+//! The energy of a motion as a function of the robot.
 //!
 //! Along a given motion the torque of a joint is linear in the parameters of the bodies, the rotor,
 //! friction and a spring,
@@ -7,9 +7,9 @@
 //! τ = τ₀ + Y Δπ + q̈ ΔJ + q̇ Δf_v + s Δf_c + τ_spring Δk,
 //! ```
 //!
-//! so the copper loss is quadratic in them and everything else is linear: a few sums over the motion
-//! give the energy of any robot. The drive loss is summed over the times at which the model itself
-//! brakes: at their ends the power is zero, so that a shift of an end changes little.
+//! so the copper loss is quadratic in them and the other parts are linear: a few integrals over the
+//! motion give the energy of any robot. The drive loss is integrated over the times at which the
+//! model brakes; at their ends the power is zero, so a shift of an end has little effect.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -21,39 +21,39 @@ use crate::arm::robot::{MAX_DOF, Model, Sharing};
 use crate::retime::motion::timeline::{Event, Run, What};
 use crate::retime::path::joint_path::Joints;
 
-/// Length of an interval with two points, s: sums over a motion are then right to some thousandths.
+/// Length of an interval with two points, s: the relative error of integrals is some thousandths.
 const STEP: f64 = 0.1;
-/// Intervals of a motion, at least and at most.
+/// Fewest and most intervals of a motion.
 const STEPS: (f64, f64) = (6.0, 400.0);
-/// Points of Gauss's rule on [0, 1].
+/// Points of the two-point Gauss rule on [0, 1].
 const POINTS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 
-/// Columns that are multiplied at once: few enough for the cache.
+/// Columns that are multiplied together: few enough for the cache.
 const COLUMNS: usize = 64;
 
-/// Sums over motions and rests.
+/// Integrals over motions and rests.
 #[derive(Clone, Debug)]
 pub struct Moments {
     joints: Vec<JointSums>,
-    /// Time with open brakes, s.
+    /// Time with released brakes, s.
     open_s: f64,
 }
 
-/// Sums of one joint; the first entry is the model's own torque, then come the parameters of the
-/// links from the joint on, then those of the joint.
+/// Integrals of one joint over its features φ: torque of the model, parameters of the links from
+/// the joint on, parameters of the joint.
 #[derive(Clone, Debug)]
 struct JointSums {
-    /// ∫ φ φᵀ dt in motion, and at rest.
+    /// ∫ φ φᵀ dt in motion; then at rest.
     moving: DMatrix<f64>,
     resting: DMatrix<f64>,
     /// ∫ φ q̇ dt.
     work: DVector<f64>,
-    /// −∫ φ q̇ dt where the drive burns it.
+    /// −∫ φ q̇ dt over the times of braking.
     burnt: DVector<f64>,
 }
 
 impl Moments {
-    /// Sums over nothing.
+    /// Empty integrals.
     pub fn none(model: &Model) -> Moments {
         let joint = |j: usize| {
             let n = features::count(model, j);
@@ -67,7 +67,7 @@ impl Moments {
         Moments { joints: (0..model.dof).map(joint).collect(), open_s: 0.0 }
     }
 
-    /// The sums of one event of a simulation.
+    /// The integrals of one event of a simulation.
     pub fn from_event(model: &Model, event: &Event) -> Moments {
         let mut moments = Moments::none(model);
         moments.event(model, event);
@@ -83,7 +83,7 @@ impl Moments {
         }
     }
 
-    /// Adds other sums, `times` times.
+    /// Adds other integrals, multiplied by `times`.
     pub fn add(&mut self, other: &Moments, times: f64) {
         for (sum, joint) in self.joints.iter_mut().zip(&other.joints) {
             let more = |sum: &mut f64, x: f64| *sum += times * x;
@@ -114,7 +114,7 @@ impl Moments {
         self.rest(model, &run.load, &run.end, run.settling);
     }
 
-    /// Adds standing still.
+    /// Adds a rest.
     pub fn rest(&mut self, model: &Model, load: &Load, q: &Joints, duration: f64) {
         if duration > 0.0 {
             self.sum(model, load, &[[*q, [0.0; 6], [0.0; 6]]], duration);
@@ -122,7 +122,7 @@ impl Moments {
         }
     }
 
-    /// Adds states that each stand for `weight` seconds.
+    /// Adds states with an integration weight of `weight` seconds each.
     fn sum(&mut self, model: &Model, load: &Load, states: &[[Joints; 3]], weight: f64) {
         let mut data = Data::new();
         let mut rows = Regressor::new();
@@ -159,13 +159,13 @@ impl Moments {
         }
     }
 
-    /// ∫ τ² dt of a joint, in motion and at rest, robot by robot \[(Nm)² s\].
+    /// ∫ τ² dt of a joint in motion and at rest, per robot \[(Nm)² s\].
     pub fn squares(&self, joint: usize, robots: &Changes) -> Vec<f64> {
         let (sums, values) = (&self.joints[joint], &robots.joints[joint].values);
         quadratic(&(&sums.moving + &sums.resting), values)
     }
 
-    /// How much more energy each of some robots takes than the model.
+    /// Energy of each robot minus that of the model.
     pub fn changes(&self, model: &Model, robots: &Changes) -> Vec<EnergyParts> {
         let rests =
             robots.base_w.iter().zip(&robots.coils_w).map(|(base_w, coils_w)| EnergyParts {

@@ -2,30 +2,30 @@
 
 use std::ops::{Add, AddAssign, Mul, Sub};
 
-/// Joules by cause.
+/// Energy by cause, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EnergyParts {
     /// ∫ Σ `τ_rigid` q̇ dt: change of kinetic and potential energy.
     pub mechanical_j: f64,
     /// Work against friction.
     pub friction_j: f64,
-    /// Loss in the windings while moving.
+    /// Copper loss in motion.
     pub copper_j: f64,
     /// Converter loss and braking energy that is not recovered.
     pub drive_j: f64,
     /// Base power, and holding power at rest.
     pub idle_j: f64,
-    /// Keeping brakes open, and opening them.
+    /// Brake coils, and release of brakes.
     pub brake_j: f64,
 }
 
 impl EnergyParts {
-    /// All six.
+    /// Sum of all six parts.
     pub fn energy_j(&self) -> f64 {
         self.motion_energy_j() + self.idle_j + self.brake_j
     }
 
-    /// The first four.
+    /// Sum of the first four parts.
     pub fn motion_energy_j(&self) -> f64 {
         self.mechanical_j + self.friction_j + self.copper_j + self.drive_j
     }

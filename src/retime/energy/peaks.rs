@@ -1,4 +1,4 @@
-//! The largest torque of each joint over plausible robots.
+//! The peak torque of each joint over plausible robots.
 
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -10,17 +10,17 @@ use crate::arm::robot::{MAX_DOF, Model};
 use crate::retime::motion::Simulation;
 use crate::retime::motion::timeline::{Event, Run, What};
 
-/// Time between two samples \[s\], and its parts around a peak.
+/// Sample step \[s\] and number of its parts around a peak.
 const STEP: f64 = 0.02;
 const PARTS: i32 = 8;
-/// Instants of a joint at which plausible robots are evaluated: those with the largest torques of the
-/// model, each the largest within this time \[s\].
+/// Number of instants per joint at which plausible robots are evaluated: the largest torques of the
+/// model that are at least this time \[s\] apart.
 const MOST: usize = 6;
 const APART: f64 = 0.1;
-/// Instants that may lie within that time of each other.
+/// Candidates per instant: samples of one peak are close together.
 const NEAR: usize = 12;
 
-/// Largest torques in a simulation \[Nm\], by joint and robot; 0 where nothing moves.
+/// Peak torques in a simulation \[Nm\], per joint and robot; 0 without motion.
 pub(super) fn peaks(model: &Model, robots: &Changes, simulation: &Simulation) -> Vec<Vec<f64>> {
     let instants = largest(model, simulation);
     let along = Along::new(model, &instants, Vec::new());
@@ -59,7 +59,7 @@ impl<'s> Sample<'s> {
         self.event.t_start + self.t
     }
 
-    /// The instant of the joint's largest torque around this sample.
+    /// The instant of the peak torque of a joint near this sample.
     fn peak(&self, model: &Model, data: &mut Data, joint: usize) -> Instant {
         let around = (1 - PARTS..PARTS).map(|i| self.t + STEP * f64::from(i) / f64::from(PARTS));
         let (mut t, mut most) = (self.t, self.torque[joint]);
@@ -74,7 +74,7 @@ impl<'s> Sample<'s> {
     }
 }
 
-/// Instants at which some joint has one of its largest torques.
+/// The instants of the largest torques of each joint.
 fn largest(model: &Model, simulation: &Simulation) -> Vec<Instant> {
     let samples: Vec<Sample> =
         simulation.events.par_iter().flat_map_iter(|event| samples(model, event)).collect();

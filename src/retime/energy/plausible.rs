@@ -15,30 +15,30 @@ use crate::arm::robot::prior::{Draws, Plausible, Spread};
 use crate::retime::motion::Simulation;
 use crate::retime::motion::timeline::Event;
 
-/// Robots that are drawn.
+/// Number of drawn robots.
 pub const DRAWS: usize = 256;
-/// Share of them in an interval.
+/// Share of the draws within an interval.
 const WITHIN: f64 = 0.9;
-/// Groups that a report lists, at most.
+/// Largest number of groups in a report.
 const LISTED: usize = 5;
-/// Parts of a simulation that are summed in parallel; each takes memory.
+/// Number of parts of a simulation that are summed in parallel; each takes memory.
 const PARTS: usize = 4;
 /// Share of the variance below which a group is not listed.
 pub const LEAST: f64 = 0.02;
 
-/// A number over plausible robots.
+/// Quantiles of a number over plausible robots.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
-    /// Half of the robots lie below.
+    /// Median.
     pub median: f64,
-    /// 90 % of them lie between these.
+    /// Lower bound; 90 % of the robots are between both bounds.
     pub low: f64,
-    /// As before.
+    /// Upper bound.
     pub high: f64,
 }
 
 impl Interval {
-    /// The interval of the values of all draws.
+    /// The interval of the values of the draws.
     pub fn from_values(values: &[f64]) -> Interval {
         let mut sorted = values.to_vec();
         sorted.sort_by(f64::total_cmp);
@@ -53,14 +53,14 @@ impl Interval {
     }
 }
 
-/// A group of uncertain parameters, with its share of the variance of a result.
+/// A group of uncertain parameters and its share of the variance of a result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contribution {
     /// Name of the group.
     pub group: String,
     /// Share of the variance.
     pub share: f64,
-    /// The measurement that would reduce it.
+    /// A measurement that reduces it.
     pub narrowed_by: &'static str,
 }
 
@@ -72,7 +72,7 @@ pub struct Robots {
 }
 
 impl Robots {
-    /// Draws for a model; `None` where all parameters are known, or it has no dynamics.
+    /// The draws for a model; `None` if all parameters are known or it has no dynamics.
     pub fn new(model: &Model) -> Option<Robots> {
         if !model.has_dynamics() {
             return None;
@@ -86,7 +86,7 @@ impl Robots {
         Some(Robots { spread, draws, changes })
     }
 
-    /// The robots.
+    /// The drawn robots.
     pub fn drawn_robots(&self) -> &[Plausible] {
         &self.draws.robots
     }
@@ -96,13 +96,13 @@ impl Robots {
         &self.changes
     }
 
-    /// Energy of each robot less that of the model.
+    /// Energy of each robot minus that of the model.
     pub fn changes(&self, model: &Model, moments: &Moments) -> Vec<EnergyParts> {
         moments.changes(model, &self.changes)
     }
 
-    /// Contributions to the variance of a result, the largest first. Each group explains part of what
-    /// the groups before it leave: the groups of a calibrated robot are correlated.
+    /// Contributions to the variance of a result, largest first. Groups of a calibrated robot are
+    /// correlated, so each group explains a part of the variance that the groups before it leave.
     pub fn contributions(&self, values: &[f64]) -> Vec<Contribution> {
         let mut groups: BTreeMap<&str, Vec<&Vec<f64>>> = BTreeMap::new();
         for (latent, z) in self.spread.latents.iter().zip(&self.draws.latents) {
@@ -116,7 +116,7 @@ impl Robots {
         while parts.len() < LISTED {
             let explained = groups.iter().map(|(group, latents)| {
                 let part = explained(latents, &rest);
-                // Less what a group explains by chance.
+                // Subtract what a group explains by chance.
                 let chance = latents.len() as f64 / count * rest.norm_squared();
                 let share = (part.norm_squared() - chance) / variance;
                 (*group, share, part)
@@ -134,7 +134,7 @@ impl Robots {
     }
 }
 
-/// Least-squares fit of some values by the latent numbers of a group, draw by draw.
+/// Least-squares fit of values by the latent variables of a group, one value per draw.
 fn explained(latents: &[&Vec<f64>], values: &DVector<f64>) -> DVector<f64> {
     let columns: Vec<DVector<f64>> =
         latents.iter().map(|z| DVector::from_column_slice(z)).collect();
@@ -143,10 +143,10 @@ fn explained(latents: &[&Vec<f64>], values: &DVector<f64>) -> DVector<f64> {
     slopes.map_or_else(|_| DVector::zeros(values.len()), |slopes| z * slopes)
 }
 
-/// Singular values below this count as zero.
+/// Singular values below this are zero.
 const SINGULAR: f64 = 1e-9;
 
-/// The measurement that would reduce the uncertainty of a group most.
+/// The measurement that reduces the uncertainty of a group most.
 fn narrowed_by(group: &str) -> &'static str {
     match group {
         "base power" | "brake coils" => "the cabinet's power at standstill, brakes closed and open",
@@ -164,17 +164,17 @@ fn narrowed_by(group: &str) -> &'static str {
 /// Energies of a simulation over plausible robots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plausibility {
-    /// All energy, J.
+    /// Total energy, J.
     pub energy_j: Interval,
-    /// That of motions, J.
+    /// Motion energy, J.
     pub motion_energy_j: Interval,
     /// Largest torque of each joint \[Nm\].
     pub torque_nm: Vec<Interval>,
-    /// What the variance of all energy comes from.
+    /// Contributions to the variance of the total energy.
     pub contributions: Vec<Contribution>,
 }
 
-/// The sums of a whole simulation.
+/// The integrals over a whole simulation.
 pub fn moments(model: &Model, simulation: &Simulation) -> Moments {
     let of = |events: &[Event]| {
         let mut sums = Moments::none(model);
@@ -185,7 +185,7 @@ pub fn moments(model: &Model, simulation: &Simulation) -> Moments {
     };
     let length = simulation.events.len().div_ceil(PARTS).max(1);
     let parts: Vec<Moments> = simulation.events.par_chunks(length).map(of).collect();
-    // In order, so that the same input gives the same digits.
+    // Sum in a fixed order for reproducible digits.
     let sum = |mut all: Moments, part: Moments| {
         all.add(&part, 1.0);
         all
@@ -193,7 +193,7 @@ pub fn moments(model: &Model, simulation: &Simulation) -> Moments {
     parts.into_iter().reduce(sum).unwrap_or_else(|| Moments::none(model))
 }
 
-/// The intervals of the energies of a simulation; `None` where all parameters are known.
+/// The intervals of the energies of a simulation; `None` if all parameters are known.
 pub fn plausibility(
     model: &Model,
     simulation: &Simulation,

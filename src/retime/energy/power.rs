@@ -31,7 +31,7 @@ impl Power {
         self.rigid_w + self.friction_w
     }
 
-    /// What the drive takes from the grid besides base power, W.
+    /// Power of the drive from the grid without base power, W.
     pub fn electrical_w(&self) -> f64 {
         self.mechanical_w() + self.copper_w + self.drive_w
     }
@@ -42,13 +42,13 @@ pub fn power(model: &Model, data: &mut Data, load: &Load, state: &JointState) ->
     power_at(model, data, load, [&state.q, &state.qd, &state.qdd])
 }
 
-/// The same for a robot of any number of joints, at position, velocity and acceleration.
+/// The same for any number of joints, at position, velocity and acceleration.
 pub fn power_at(model: &Model, data: &mut Data, load: &Load, state: [&[f64]; 3]) -> Power {
     let [q, qd, qdd] = state;
     of_torque(model, qd, &torque(model, data, load, q, qd, qdd))
 }
 
-/// [`power`] in several states at once, which is faster.
+/// [`power`] in several states together, which is faster.
 #[inline]
 fn power_each<const N: usize>(model: &Model, load: &Load, states: &[JointState; N]) -> [Power; N] {
     let lists = states.each_ref().map(|s| -> [&[f64]; 3] { [&s.q, &s.qd, &s.qdd] });
@@ -68,7 +68,7 @@ fn of_torque(model: &Model, qd: &[f64], Torque { rigid, friction }: &Torque) -> 
         copper_w += model.motors.as_ref().map_or(0.0, |m| m.loss_constant[j]) * motor[j] * motor[j];
         lost_by_joint += (-motor[j] * rates[j]).max(0.0);
     }
-    // Negative mechanical power: of each joint, or of their sum on a common bus.
+    // Negative mechanical power: per joint, or of the sum on a common bus.
     let lost = match model.drive.sharing {
         Sharing::None => lost_by_joint,
         Sharing::Bus => (-(rigid_w + friction_w)).max(0.0),
@@ -77,8 +77,8 @@ fn of_torque(model: &Model, qd: &[f64], Torque { rigid, friction }: &Torque) -> 
     Power { tau: all, rigid_w, friction_w, copper_w, drive_w }
 }
 
-/// What the whole robot takes in a state that needs `power`: base power and the coils that keep
-/// the brakes open are always drawn, and at rest it holds, W.
+/// Power of the whole robot, W: base power and brake coils, plus `power` in motion or holding power
+/// at rest.
 pub fn supply_w(
     model: &Model,
     data: &mut Data,
@@ -96,15 +96,15 @@ pub fn supply_w(
     }
 }
 
-/// Power with which a loaded robot holds still, by joint: copper loss of the gravity torque and
-/// the constant of the robot's file, W.
+/// Holding power of a loaded robot per joint, W: copper loss of the gravity torque and the constant
+/// of the robot file.
 pub fn holding_w(model: &Model, load: &Load, q: &Joints) -> Joints {
     let holding = holding_at(model, &mut Data::new(), load, q);
     std::array::from_fn(|j| holding[j])
 }
 
 fn holding_at(model: &Model, data: &mut Data, load: &Load, q: &[f64]) -> [f64; MAX_DOF] {
-    // Gravity, and what a balancer carries of it.
+    // Gravity torque less the part of a balancer.
     let still = torque(model, data, load, q, &[], &[]).rigid;
     let tau = motor_torques(model, still);
     std::array::from_fn(|j| {
@@ -116,8 +116,7 @@ fn holding_at(model: &Model, data: &mut Data, load: &Load, q: &[f64]) -> [f64; M
     })
 }
 
-/// Kinks nearer to each other than this are ignored, s: they change the acceleration too little to
-/// matter.
+/// Kinks closer to each other than this are ignored, s: their effect on the acceleration is small.
 const MIN_STEP: f64 = 0.004;
 
 /// The motion energy (without idle and brake parts) between two times of a motion.
@@ -138,7 +137,7 @@ pub fn motion_energy(
     }
     knots.push(to);
     reversals(motion, &mut knots);
-    // The rigid work is the change of kinetic and potential energy; the rest is integrated.
+    // Rigid work is the change of kinetic and potential energy; the other parts are integrated.
     let ends = [from, to].map(|t| motion.at(t));
     let [before, after] = ends.map(|JointState { q, qd, .. }| {
         kinetic_energy(model, load, &q, &qd) + potential_energy(model, load, &q)
@@ -152,8 +151,8 @@ pub fn motion_energy(
     sum
 }
 
-/// Friction, copper and drive loss, and the rigid power: where that changes its sign, what the
-/// drive loses has a kink.
+/// Friction, copper and drive loss, and the rigid power, at whose sign changes the drive loss has a
+/// kink.
 struct Drawn<'a> {
     model: &'a Model,
     load: &'a Load,
@@ -167,15 +166,15 @@ impl Powers<4> for Drawn<'_> {
     }
 }
 
-/// Longest step of the search for reversals of a joint, s: between two kinks no joint reverses twice
-/// within it by a distance that matters.
+/// Longest step of the search for reversals, s: within it no joint reverses twice by a relevant
+/// distance between two kinks.
 const LOOK: f64 = 0.06;
-/// Most steps between two kinks: a motion so slow changes little in each.
+/// Most steps between two kinks; a motion that slow changes little in each.
 const MOST_LOOKS: f64 = 2000.0;
-/// Bisections of that search, down to 0.1 µs.
+/// Bisection steps to a reversal, down to 0.1 µs.
 const HALVINGS: usize = 18;
 
-/// Adds the times at which a joint reverses, where dry friction jumps.
+/// Adds the times at which a joint reverses, where Coulomb friction jumps.
 fn reversals(motion: &TimedMotion, knots: &mut Vec<f64>) {
     let mut found = Vec::new();
     let mut before = motion.rates(knots[0]);

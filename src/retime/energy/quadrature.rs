@@ -1,25 +1,25 @@
-//! Integrals over time of powers that are smooth but for a few kinks.
+//! Time integrals of powers that are smooth except for a few kinks.
 //!
-//! Gauss-Legendre rules on intervals of adaptive length. Three of the five points make a rule of
-//! degree 3; the difference of both rules tells whether an interval is too long.
+//! Gauss–Legendre rules on intervals of adaptive length. Three of the five points form a rule of
+//! degree 3; the difference of both rules estimates the error of an interval.
 
-/// Longest interval at first, s: a kink near its end may be passed over.
+/// Longest initial interval, s: a kink near an end of a longer one could be missed.
 const FIRST: f64 = 0.06;
 /// Longest interval where powers hardly change, s.
 const LONGEST: f64 = 0.24;
-/// Change of a power (W) on an interval times its length (s) up to which the next one may be
-/// longer, J: a kink as steep as that, passed over near an end, is worth a thousandth of it.
+/// Change of a power (W) times the interval length (s) up to which the next interval may be longer,
+/// J: missing a kink of this slope near an end costs a thousandth of it.
 const QUIET_J: f64 = 4.0;
-/// Most intervals of one stretch: what is so slow changes little in each.
+/// Most intervals of an integral; powers that slow change little in each.
 const MOST: f64 = 2000.0;
-/// An interval that is not halved, s.
+/// Length below which an interval is not halved, s.
 const FINE: f64 = 0.024;
-/// An interval for which two points suffice, s.
+/// Length up to which two points suffice, s.
 const SHORT: f64 = 0.01;
-/// Difference of the two rules above which an interval is halved, J: that of the finer rule from
-/// the integral is far smaller.
+/// Difference of the two rules above which an interval is halved, J; the error of the finer rule is
+/// far smaller.
 const UNEVEN_J: f64 = 0.01;
-/// The same below which the next interval is twice as long, J.
+/// Difference below which the next interval is twice as long, J.
 const EVEN_J: f64 = 0.5 * UNEVEN_J;
 
 /// Points on [−1, 1] with their weights.
@@ -39,18 +39,18 @@ const CUBIC: [f64; 5] = [OUTER, 0.0, 2.0 - 2.0 * OUTER, 0.0, OUTER];
 
 /// N powers over time, W.
 pub(super) trait Powers<const N: usize> {
-    /// At some times, s.
+    /// The powers at these times (s).
     fn at<const K: usize>(&self, times: [f64; K]) -> [[f64; N]; K];
 }
 
-/// The integrals of `powers` (W) over a stretch of time (s), J.
+/// The integrals of `powers` (W) between two times (s), J.
 pub(super) fn integral<const N: usize>(from: f64, to: f64, powers: &impl Powers<N>) -> [f64; N] {
     let mut sum = [0.0; N];
     let [first, longest] = [FIRST, LONGEST].map(|most| most.max((to - from) / MOST));
     let (mut begin, mut length) = (from, first);
     while begin < to {
         let left = to - begin;
-        // Equal intervals on what is left: no short one at the end.
+        // Equal intervals on the rest, so that the last one is not short.
         let h = left / (left / length).ceil();
         if h <= FINE {
             let part = if h <= SHORT {
@@ -95,11 +95,11 @@ fn rule<const N: usize, const K: usize>(
     sum
 }
 
-/// The integrals by the rule with five points, and their error estimate.
+/// The integrals by the five-point rule and their error estimate.
 struct Estimate<const N: usize> {
     /// The integrals, J.
     part: [f64; N],
-    /// Difference of the other rule, J.
+    /// Difference from the other rule, J.
     off: f64,
     /// The largest change of a power between the points, W.
     change: f64,
@@ -130,7 +130,7 @@ mod tests {
 
     use super::*;
 
-    /// Powers that count how often they are asked for.
+    /// Powers with a count of their evaluations.
     struct Counted<F>(F, Cell<usize>);
 
     impl<const N: usize, F: Fn(f64) -> [f64; N]> Powers<N> for Counted<F> {
@@ -145,7 +145,7 @@ mod tests {
         beside(from, to, |t| [power(t), 0.0])
     }
 
-    /// The same of the first of two powers.
+    /// The same for the first of two powers.
     fn beside(from: f64, to: f64, powers: impl Fn(f64) -> [f64; 2]) -> (f64, usize) {
         let counted = Counted(powers, Cell::new(0));
         let [sum, _] = integral(from, to, &counted);
@@ -161,7 +161,7 @@ mod tests {
 
     #[test]
     fn kinks_shorten_the_intervals() {
-        // What is lost of a power that turns from braking to driving at 10 kW/s.
+        // Braking loss of a power that changes from braking to driving at 10 kW/s.
         for kink in [0.11, 0.29, 0.437, 0.5, 0.7723] {
             let driving = |t: f64| 1e4 * (t - kink);
             let (sum, count) = beside(0.0, 1.0, |t| [driving(t).max(0.0), driving(t)]);

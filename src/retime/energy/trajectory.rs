@@ -1,4 +1,4 @@
-//! The planned motion of a whole cycle as rows of samples.
+//! The planned motion of a whole cycle as samples.
 
 use super::power::{Power, power, supply_w};
 use crate::arm::dynamics::{Data, Load};
@@ -15,19 +15,19 @@ pub const STEP: f64 = 0.002;
 /// One sample.
 #[derive(Clone, Debug)]
 pub struct Sample {
-    /// s from the start of the cycle.
+    /// Time from the start of the cycle, s.
     pub t: f64,
-    /// Joints.
+    /// State of the joints.
     pub state: JointState,
-    /// Torques and powers; `None` where the robot has no dynamics.
+    /// Torques and powers; `None` if the robot has no dynamics.
     pub power: Option<Power>,
     /// Electrical power with base, holding and brake power, W.
     pub electrical_w: Option<f64>,
-    /// TCP in the base frame, m.
+    /// TCP position in the base frame, m.
     pub tcp: [f64; 3],
-    /// m/s.
+    /// TCP speed, m/s.
     pub tcp_speed: f64,
-    /// The statement that is executed.
+    /// The executed statement.
     pub span: Option<Span>,
 }
 
@@ -70,7 +70,7 @@ pub fn trajectory(model: &Model, simulation: &Simulation) -> Vec<Sample> {
     sampler.rows
 }
 
-/// Ends of movements and knots of the motions, s from the start of the run.
+/// Ends of movements and knots of motions, s from the start of the run.
 fn marks(run: &Run) -> Vec<f64> {
     let mut marks = vec![0.0, run.duration() - run.settling];
     marks.extend(run.moves.iter().map(|record| record.t_start + record.duration));
@@ -82,7 +82,7 @@ fn marks(run: &Run) -> Vec<f64> {
     marks
 }
 
-/// The marks and points between them at most a step apart.
+/// The marks with additional times at most a step apart.
 fn dense(marks: &[f64]) -> Vec<f64> {
     let mut times = Vec::new();
     for pair in marks.windows(2) {
@@ -111,7 +111,7 @@ impl Sampler<'_> {
         let tcp_speed = rate.fixed_rows::<3>(0).norm();
         let row = Sample { t, state, power, electrical_w, tcp: tcp.into(), tcp_speed, span };
         match self.rows.last_mut() {
-            // One row a time: where one statement ends, the next begins.
+            // One row per time: the last statement replaces the one that ends there.
             Some(last) if last.t == t => *last = row,
             _ => self.rows.push(row),
         }

@@ -1,13 +1,13 @@
-//! Jerk limitation: the joints follow a moving average of a motion along a path.
+//! Jerk limitation: the joint angles are a moving average of a motion along a path.
 //!
 //! With a step density h of length w, q̄(t) = ∫ h(τ) q(t−τ) dτ. Between its edges h is constant, so
-//! q̄, q̄̇ and q̄̈ are sums over the edges of ∫ q, q and q̇. The acceleration builds up in w, the
-//! motion takes w longer, and what bounds joint velocity and acceleration before bounds them
-//! after. Averaging the joints and not the place on the path lets the motion cut corners by the
-//! more the faster it passes them, which runs of an IRC5 show (docs/controller.md).
+//! q̄, q̄̇ and q̄̈ are sums over the edges of ∫ q, q and q̇. The acceleration rises within w, the
+//! motion takes w longer, and bounds of joint velocity and acceleration remain valid. Since the
+//! joint angles are averaged and not s, the motion cuts corners, more so at high speed, as runs of
+//! an IRC5 show (docs/controller.md).
 //!
-//! When the motion before averaging has ended, a polynomial of degree 5 brings the joints to rest
-//! a little earlier than the average would.
+//! After the end of the unaveraged motion a quintic brings the joints to rest, slightly earlier
+//! than the average would.
 
 use super::controller::Average;
 use super::joint_state::JointState;
@@ -16,8 +16,8 @@ use super::timing::profile::Profile;
 use crate::retime::path::JointPath;
 use crate::retime::path::joint_path::{DOF, Joints, Piece};
 
-/// Gauss-Legendre with four points on [0, 1]: exact up to degree 7. On a stretch without
-/// acceleration the joints are of degree 5.
+/// Four-point Gauss–Legendre rule on [0, 1], exact to degree 7. Without path acceleration the joint
+/// angles have degree 5.
 const GAUSS: [(f64, f64); 4] = [
     (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
     (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
@@ -25,17 +25,17 @@ const GAUSS: [(f64, f64); 4] = [
     (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
 ];
 
-/// Jump of the path acceleration, as a share of the largest acceleration, from which a knot is set.
+/// Jump of the path acceleration at which a knot is set, as a share of the largest acceleration.
 const KINK: f64 = 0.02;
 
-/// Joint speed (rad/s) and acceleration (rad/s²) below which a value is rounding. The sign of such a
-/// speed must not reach the dry friction.
+/// Joint speed (rad/s) and acceleration (rad/s²) at rounding level: the sign of such a speed must
+/// not cause Coulomb friction.
 const STILL: f64 = 1e-9;
 
-/// Difference of a stretch's polynomial from the joints in its middle above which it is halved,
-/// rad: as exact as the pieces of the path.
+/// Error in the middle of a polynomial above which its interval is halved, rad: the same as for the
+/// pieces of the path.
 const STRETCH_TOLERANCE: f64 = 2e-7;
-/// Halvings of a stretch.
+/// Largest number of halvings.
 const HALVINGS: usize = 6;
 
 /// The timing of a path: a speed profile, averaged over time.
@@ -43,27 +43,27 @@ const HALVINGS: usize = 6;
 pub struct Averaged {
     profile: Profile,
     window: f64,
-    /// Edges of the steps of the average as delays (s), with the changes of its density there
-    /// (1/s): q̄ = Σ c ∫ q up to t − delay.
+    /// Edges of the density as delays (s) with the changes of the density there (1/s):
+    /// q̄ = Σ c ∫ q up to t − delay.
     edges: [(f64, f64); 4],
     /// Joints at both ends, rad.
     ends: [Joints; 2],
-    /// ∫ (q − q₀) before averaging, rad s, in order of time.
+    /// ∫ (q − q₀) of the unaveraged motion, rad s, in order of time.
     stretches: Vec<Quintics>,
-    /// Where they begin, s.
+    /// Start times of the stretches, s.
     begins: Vec<f64>,
-    /// The same where the motion before averaging ends.
+    /// The integral at the end of the unaveraged motion, rad s.
     integral: Joints,
-    /// Times between which the averaged joints move smoothly, s.
+    /// Times between which the motion is smooth, s.
     knots: Vec<f64>,
-    /// The end of the motion, from where the motion before averaging has ended.
+    /// The motion after the end of the unaveraged motion.
     closing: Quintics,
-    /// s.
+    /// Duration, s.
     duration: f64,
 }
 
 impl Averaged {
-    /// The path run by `profile`, averaged.
+    /// The average of the motion along the path with `profile`.
     pub fn new(path: &JointPath, profile: Profile, average: Average) -> Averaged {
         let Average { window, core, closing } = average;
         let begin = profile.duration();
@@ -97,17 +97,17 @@ impl Averaged {
         averaged
     }
 
-    /// s.
+    /// Duration, s.
     pub fn duration(&self) -> f64 {
         self.duration
     }
 
-    /// When the motion is nearest to the place s of the path, s from its start.
+    /// Time at which the motion is nearest to s of the path, s.
     pub fn time_at(&self, s: f64) -> f64 {
         (self.profile.time_at(s) + 0.5 * self.window).min(self.duration())
     }
 
-    /// The state at `t`; outside, at rest at the nearer end.
+    /// The state at `t`; outside the motion at rest at the nearer end.
     pub fn at(&self, t: f64) -> JointState {
         if t <= 0.0 {
             return JointState::rest(self.ends[0]);
@@ -143,7 +143,7 @@ impl Averaged {
         state
     }
 
-    /// Joint velocities at `t`, rad/s: those of [`Averaged::at`] alone.
+    /// Joint velocities at `t`, rad/s, as in [`Averaged::at`].
     pub fn rates(&self, t: f64) -> Joints {
         if t <= 0.0 || t >= self.duration || self.window == 0.0 || t >= self.closing.begin() {
             return self.at(t).qd;
@@ -158,7 +158,7 @@ impl Averaged {
         qd.map(|qd| if qd.abs() < STILL { 0.0 } else { qd })
     }
 
-    /// q − q₀ before averaging.
+    /// q − q₀ of the unaveraged motion.
     fn turned(&self, t: f64) -> Joints {
         if t <= 0.0 {
             [0.0; DOF]
@@ -181,13 +181,13 @@ impl Averaged {
         &self.stretches[after.saturating_sub(1)]
     }
 
-    /// Times between which the joints move smoothly, from 0 to the duration, s.
+    /// Times between which the motion is smooth, from 0 to the duration, s.
     pub fn knots(&self) -> &[f64] {
         &self.knots
     }
 
-    /// Times at which the acceleration before averaging jumps by more than [`KINK`], and these times
-    /// delayed by the edges of the average.
+    /// Times at which the unaveraged acceleration jumps by more than [`KINK`], and these times
+    /// delayed by the edges of the density.
     fn smooth_between(&self) -> Vec<f64> {
         let pieces: Vec<f64> = self.profile.pieces().map(|piece| piece.acceleration).collect();
         let largest = pieces.iter().fold(0.0, |max: f64, a| max.max(a.abs()));
@@ -212,7 +212,7 @@ impl Averaged {
         knots
     }
 
-    /// ∫ (q − q₀), q − q₀ and q̇ before averaging.
+    /// ∫ (q − q₀), q − q₀ and q̇ of the unaveraged motion.
     #[inline]
     fn source(&self, t: f64) -> [Joints; 3] {
         if t <= 0.0 {
@@ -228,8 +228,8 @@ impl Averaged {
     }
 }
 
-/// ∫ (q − q₀) as polynomials between the times at which the profile passes its nodes and the
-/// ends of the path's pieces, and its value at the end.
+/// ∫ (q − q₀) as polynomials between the times of the profile nodes and of the ends of the path
+/// pieces, and its value at the end.
 fn stretches(path: &JointPath, profile: &Profile) -> (Vec<Quintics>, Joints) {
     let (s, pieces) = (profile.s(), path.pieces());
     let (mut interval, mut piece) = (0, 0);
@@ -270,7 +270,7 @@ struct Stretches<'a> {
 }
 
 impl Stretches<'_> {
-    /// Adds the time from `begin` to `end`, on a piece and an interval of the profile.
+    /// Adds the time from `begin` to `end` on one piece and one interval of the profile.
     fn add(&mut self, piece: &Piece, interval: usize, (begin, end): (f64, f64), halvings: usize) {
         let h = end - begin;
         let mut sum = self.sum;

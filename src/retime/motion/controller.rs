@@ -1,31 +1,31 @@
-//! Constants of the controller's motion planner under the settings in force.
+//! Constants of the motion planner under the current settings.
 
 use crate::arm::robot::Model;
 use crate::rapid::ir::movement::Settings;
 use crate::retime::path::joint_path::Joints;
 
-/// Window of the average where the robot's file states none, s. Runs of an IRC5 with an IRB6640: the
-/// speed changes by Δv with the acceleration Δv/0.1 s at v300 to v1000; a window of 0.1 s also
-/// gives the least error of the joints over the runs that constants were chosen by.
+/// Default window of the average, s. Runs of an IRC5 with an IRB6640: at v300 to v1000 the speed
+/// changes by Δv with the acceleration Δv/0.1 s; a window of 0.1 s also gives the least joint error
+/// over the runs that the constants were fitted to.
 const RAMP_S: f64 = 0.10;
-/// Share of the average that lies in the middle half of the window instead of all over it. Same
-/// runs, by the closest approach to corners passed at 1 m/s and more.
+/// Default share of the average in the middle half of the window. Same runs: closest approach to
+/// corners passed at 1 m/s and more.
 const CORE: f64 = 0.16;
-/// Share of the window by which a motion ends early. Same runs: their durations, from the start of
-/// the first command to standstill, are 0.03 to 0.04 s shorter than the averaged motion.
+/// Default share of the window by which a motion ends early. Same runs: from the start of the first
+/// command to standstill they are 0.03 to 0.04 s shorter than the averaged motion.
 const CLOSING: f64 = 0.33;
-/// Period of the interpolator where the robot's file has none, s. Published configurations:
-/// `std_servo_queue_time` of 0.193536 s is 48 periods.
+/// Default period of the interpolator, s. Published configurations: `std_servo_queue_time` of
+/// 0.193536 s is 48 periods.
 const INTERPOLATION_S: f64 = 0.004_032;
 
-/// Time in which each joint reaches its largest speed where the robot's file has no accelerations,
-/// s: that of an IRB6640-180/2.55, from its measured accelerations and the speeds of its data sheet.
+/// Time to the largest speed of each joint without accelerations in the robot file, s: from
+/// measured accelerations and data sheet speeds of an IRB6640-180/2.55.
 const TO_FULL_SPEED_S: Joints = [0.34, 0.36, 0.17, 0.08, 0.07, 0.07];
 
-/// Constants of the planner under the settings in force.
+/// Constants of the planner under the current settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Planning {
-    /// How the joints are averaged.
+    /// Average of the joint angles.
     pub average: Average,
     /// Time between the end of a movement at a stop point and the start of the next, s.
     pub settling_s: f64,
@@ -34,31 +34,31 @@ pub struct Planning {
 /// The moving average that limits the jerk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Average {
-    /// Its length, s: the time in which the acceleration builds up.
+    /// Length, s: the rise time of the acceleration.
     pub window: f64,
-    /// Share of it that lies in its middle half, besides what is spread all over.
+    /// Share in the middle half; the rest is spread over the whole window.
     pub core: f64,
     /// Time by which a motion ends before the average is complete, s.
     pub closing: f64,
 }
 
 impl Planning {
-    /// From the robot's figures and `AccSet`.
+    /// From the robot file and `AccSet`.
     pub fn new(model: &Model, settings: &Settings) -> Planning {
         let controller = &model.controller;
-        // AccSet's ramp is the rate of change of the acceleration; that of stop points is taken
-        // for the whole way to one.
+        // The ramp of AccSet is the rate of change of the acceleration; the fine-point ramp is
+        // applied to the whole movement.
         let ramp = settings.ramp.min(settings.fine_point_ramp);
         let window = controller.ramp_s.unwrap_or(RAMP_S) / ramp;
         let closing = window * controller.closing.unwrap_or(CLOSING);
         Planning {
             average: Average { window, core: controller.ramp_core.unwrap_or(CORE), closing },
-            // The runs stop as long as if every average were complete.
+            // In the logged runs the stop lasts as long as after a complete average.
             settling_s: controller.settling_s.unwrap_or(closing),
         }
     }
 
-    /// The same with the average carried out to its end, and a shorter rest behind it.
+    /// The same with a complete average and a shorter rest after it.
     #[must_use]
     pub fn complete(self) -> Planning {
         let Planning { average, settling_s } = self;
@@ -67,17 +67,17 @@ impl Planning {
     }
 }
 
-/// Limits of the joints under the settings in force.
+/// Joint limits under the current settings.
 #[derive(Clone, Debug)]
 pub struct MotionLimits {
     /// rad/s².
     pub acceleration: Joints,
-    /// Nm, infinite where the robot has no dynamics.
+    /// Nm, infinite if the robot has no dynamics.
     pub torque: Joints,
 }
 
-/// The limits of the robot with a share of its accelerations. Where its file has none they follow
-/// from [`TO_FULL_SPEED_S`].
+/// The limits of the robot with a share of its accelerations; without accelerations in its file
+/// they follow from [`TO_FULL_SPEED_S`].
 pub fn motion_limits(model: &Model, share: f64) -> MotionLimits {
     let list = |values: &Option<Vec<f64>>, factor: f64| -> Joints {
         std::array::from_fn(|j| {
@@ -94,7 +94,7 @@ pub fn motion_limits(model: &Model, share: f64) -> MotionLimits {
     MotionLimits { acceleration, torque }
 }
 
-/// What a simulation assumes about the robot where its file has no figures.
+/// Assumptions of a simulation for missing figures of the robot file.
 pub fn assumed(model: &Model) -> Option<String> {
     model.limits.acceleration.is_none().then(|| {
         format!(

@@ -14,7 +14,7 @@ pub struct JointState {
 }
 
 impl JointState {
-    /// Standing at `q`.
+    /// At rest at `q`.
     pub fn rest(q: Joints) -> JointState {
         JointState { q, qd: [0.0; DOF], qdd: [0.0; DOF] }
     }

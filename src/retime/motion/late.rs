@@ -1,8 +1,8 @@
-//! A stream that exceeds the limits of the robot is executed later than its times say.
+//! Slower execution of a stream that exceeds the limits of the robot.
 //!
-//! A controller that cannot reach a point within its `\T` takes longer there, and keeps the times of the
-//! other points. So the intervals in which the motion exceeds a limit are lengthened, each a little,
-//! until no limit is exceeded.
+//! A controller that cannot reach a point within its `\T` takes longer there and keeps the times of
+//! the other points. So the intervals with an excess are lengthened in small steps until no limit
+//! is exceeded.
 
 use super::sampling::Loaded;
 use super::stream::{Piece, Stream};
@@ -10,16 +10,16 @@ use crate::arm::dynamics::{Data, torque};
 use crate::arm::robot::Model;
 use crate::retime::path::joint_path::{DOF, Joints};
 
-/// Excess over a limit that the rounding of emitted figures explains.
+/// Accepted excess of a limit: rounding of the emitted figures.
 const ROUNDING: f64 = 1e-3;
-/// Share by which an interval gets longer in one round, at most.
+/// Largest relative change of an interval in one round.
 const STEP: f64 = 0.03;
-/// Rounds, at most.
+/// Largest number of rounds.
 const ROUNDS: usize = 300;
-/// Largest duration over that of the given stream.
+/// Largest ratio of the duration to that of the given stream.
 const SLOWEST: f64 = 20.0;
 
-/// The stream as the robot can run it; the same one where it is within all limits.
+/// The stream as the robot executes it; unchanged if it keeps all limits.
 pub(super) fn within_limits(loaded: Loaded<'_>, stream: Stream) -> Stream {
     let limits = Limits::new(loaded.model);
     let mut data = Data::new();
@@ -31,7 +31,7 @@ pub(super) fn within_limits(loaded: Loaded<'_>, stream: Stream) -> Stream {
         if factors.iter().all(|factor| *factor <= 1.0) || late.duration() > longest {
             break;
         }
-        // Piece p runs from the middle of interval p to that of the next one, from 1.
+        // Piece p reaches from the middle of interval p to that of the next one, counted from 1.
         let count = late.intervals().len();
         let interval = |i: usize| late.intervals()[i] * factors[i].max(factors[i + 1]);
         let intervals = (0..count).map(interval).collect();
@@ -63,7 +63,7 @@ impl Limits {
         }
     }
 
-    /// The factor by which the intervals at a piece get longer, 1 where it is within the limits.
+    /// Factor on the intervals at a piece; 1 within the limits.
     fn longer(&self, loaded: Loaded<'_>, data: &mut Data, piece: &Piece) -> f64 {
         let mut excess: f64 = 1.0;
         for share in [0.0, 0.5, 1.0] {
@@ -113,7 +113,7 @@ mod tests {
         assert!(ratio > 1.0, "{ratio}");
         let late = within_limits(loaded, hasty.clone());
         assert!(late.max_acceleration()[0] <= (1.0 + 2.0 * ROUNDING) * most);
-        // Slower as a whole would take this long.
+        // Uniform slowing takes the factor `ratio`.
         assert!(late.duration() > hasty.duration());
         assert!(late.duration() < ratio.max(1.0) * hasty.duration() * 1.05, "{}", late.duration());
         let middle = |stream: &Stream| stream.intervals()[10] / stream.intervals()[0];

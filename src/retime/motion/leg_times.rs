@@ -1,37 +1,37 @@
-//! `\T`: each timed leg of a path in its own time.
+//! `\T`: each timed leg of a path takes its own time.
 //!
-//! A time stands for a speed (RAPID reference, `\T`): the search is for the cap on the path
-//! speed of each timed leg with which it takes as long as asked. Neighbours share corners, so the
-//! caps are moved together.
+//! A time replaces a speed (RAPID reference, `\T`): the search finds the cap on the path speed of
+//! each timed leg at which it takes its time. Neighbouring legs share corners, so all caps change
+//! together.
 
 use super::timing::grid::PathGrid;
 use super::timing::limits::PathLimits;
 use super::timing::profile::Profile;
 use super::timing::reachability::time_optimal;
 
-/// Rounds of the search.
+/// Largest number of rounds.
 const ROUNDS: usize = 40;
-/// Difference from the time asked for at which a leg is done, share of it.
+/// Relative tolerance of the time of a leg.
 const IN_TIME: f64 = 1e-5;
-/// Largest change of a cap in one round, as a factor.
+/// Largest factor on a cap in one round.
 const LARGEST_STEP: f64 = 4.0;
 
 /// A leg of a path.
 pub(super) struct TimedLeg {
-    /// Where it ends in s.
+    /// End in s.
     pub end: f64,
-    /// Time that the profile is to take for it, s.
+    /// Required time, s.
     pub time: Option<f64>,
 }
 
-/// The slope of a leg's time over the inverse of its cap, from the round before.
+/// Secant search for the inverse of a cap.
 struct Search {
     inverse: f64,
     before: Option<(f64, f64)>,
 }
 
-/// The fastest profile in which no timed leg takes less than its time; `None` where a round finds
-/// no profile. A leg that can't be that fast takes longer.
+/// The fastest profile in which no timed leg is faster than its time; `None` if a round has no
+/// profile. A leg that cannot keep its time takes longer.
 pub(super) fn in_time(
     grid: &PathGrid,
     limits: &PathLimits,
@@ -47,13 +47,13 @@ pub(super) fn in_time(
         .map(|s| legs.partition_point(|leg| leg.end < 0.5 * (s[0] + s[1])).min(legs.len() - 1))
         .collect();
     let mut best = fastest;
-    // No cap at first: what can't be faster stays so.
+    // Start without caps: a leg that is too slow stays uncapped.
     let mut search: Vec<Search> =
         legs.iter().map(|_| Search { inverse: 0.0, before: None }).collect();
     for _ in 0..ROUNDS {
         let mut done = true;
         for (i, (leg, search)) in legs.iter().zip(&mut search).enumerate() {
-            // A hair early: a profile may be run slower to be exact, but not faster.
+            // Slightly early, since a profile can be slowed to the exact time but not made faster.
             let Some(time) = leg.time.map(|time| time * (1.0 - 0.5 * IN_TIME)) else { continue };
             let begin = i.checked_sub(1).map_or(0.0, |before| best.time_at(legs[before].end));
             let took = best.time_at(leg.end) - begin;
@@ -74,9 +74,9 @@ pub(super) fn in_time(
 }
 
 impl Search {
-    /// The next inverse of the cap, by the secant through the last two.
+    /// The next inverse of the cap by the secant through the last two.
     fn step(&mut self, took: f64, time: f64, length: f64) {
-        // At this cap the leg alone would take all of the time.
+        // At this cap the leg takes all its time at constant speed.
         let slowest = time / length;
         if self.inverse == 0.0 {
             self.inverse = 0.5 * slowest;
@@ -88,7 +88,7 @@ impl Search {
             }
             _ => length,
         };
-        // A leg whose cap does not bind has no slope: its length is the largest there is.
+        // The slope is at most the length of the leg; it is 0 while the cap does not bind.
         let slope = if slope > 0.01 * length { slope.min(length) } else { length };
         self.before = Some((self.inverse, took));
         let next = self.inverse + (time - took) / slope;

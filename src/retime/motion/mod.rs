@@ -1,4 +1,4 @@
-//! The virtual controller: how a program becomes a timed joint trajectory.
+//! The virtual controller: from a program to a timed joint trajectory.
 
 pub mod averaged;
 pub mod controller;

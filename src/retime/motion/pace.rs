@@ -6,22 +6,22 @@ use super::timing::grid::{PathGrid, SpeedBound};
 use super::timing::limits::{PathLimits, RowKind, tightest_row};
 use super::timing::profile::Profile;
 
-/// The limit that holds for the longest part of a movement.
+/// The limit that holds over the longest time of a movement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Pace {
-    /// It takes no time.
+    /// The movement takes no time.
     None,
-    /// A bound on the speed.
+    /// A speed bound.
     Speed(SpeedBound),
-    /// Accelerations of the joints, and the time in which they build up.
+    /// Joint accelerations and their rise time.
     Acceleration,
-    /// Torques of the joints.
+    /// Joint torques.
     Torque,
     /// `PathAccLim` or `WorldAccLim`.
     TcpAcceleration,
     /// Its `\T`.
     Time,
-    /// Its path can't be followed: the time is an estimate.
+    /// The path cannot be followed: the time is an estimate.
     Estimated,
 }
 
@@ -44,11 +44,11 @@ impl Pace {
     }
 }
 
-/// Share of a bound on the speed from which it counts as reached.
+/// Share of a speed bound from which it is reached.
 const REACHED: f64 = 0.98;
 
-/// What bounds the profile for the longest time on the nodes in `range` of s; `smoothing` (s) is
-/// the time that the build-up of the acceleration adds to it.
+/// The limit that holds over the longest time on the nodes in `range` of s; `smoothing` (s) is the
+/// time that the rise of the acceleration adds.
 pub fn pace(
     grid: &PathGrid,
     limits: &PathLimits,

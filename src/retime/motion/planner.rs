@@ -1,8 +1,7 @@
-//! The timing that the controller gives to a path.
+//! The timing of a path by the controller.
 //!
-//! The fastest motion within the speeds, accelerations and torques, then a
-//! moving average over the time in which the acceleration builds up
-//! (docs/controller.md has the measurements).
+//! The fastest motion within speeds, accelerations and torques, then a moving average over the rise
+//! time of the acceleration (docs/controller.md has the measurements).
 
 use std::sync::Arc;
 
@@ -18,20 +17,20 @@ use super::timing::profile::Profile;
 use super::timing::reachability::time_optimal;
 use crate::retime::path::JointPath;
 
-/// Intervals of the grid for one path, besides those of its zones.
+/// Grid intervals of one path, in addition to those of its zones.
 const INTERVALS: usize = 48;
 
-/// Why a path has no timing.
+/// A path has no timing.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("no timing within the limits was found for the path")]
 pub struct NoTiming;
 
-/// The controller's motion along a path, and what sets the pace of its legs.
+/// The motion of the controller along a path and the limiting quantity of each leg.
 ///
-/// `caps` holds the speed limits by leg; `times` the durations that `\T` asks for (s).
+/// `caps` are the speed limits per leg; `times` the `\T` per leg (s).
 ///
 /// # Errors
-/// [`NoTiming`]: the robot can't even stand still within its torque limits.
+/// [`NoTiming`]: the holding torque exceeds the torque limits.
 pub fn plan(
     loaded: Loaded<'_>,
     path: &Arc<JointPath>,
@@ -56,7 +55,7 @@ pub fn plan(
             break;
         }
         for (i, leg) in path.legs().enumerate() {
-            // Both legs of a corner cause its acceleration.
+            // Both legs of a corner affect its acceleration.
             let around = [i.checked_sub(1), Some(i), Some(i + 1)].into_iter().flatten();
             let Some(worst) = around.filter_map(excess).max_by(f64::total_cmp) else { continue };
             let factor = (1.0 - TIGHTER) / worst;
@@ -69,11 +68,11 @@ pub fn plan(
     Ok(planned)
 }
 
-/// Rounds in which the limits on the TCP acceleration are tightened.
+/// Largest number of rounds that tighten the limits on the TCP acceleration.
 const TIGHTENINGS: usize = 6;
-/// Additional tightening in each round, so that few rounds suffice.
+/// Additional tightening per round, so that few rounds suffice.
 const TIGHTER: f64 = 0.01;
-/// Accepted excess of the TCP acceleration over its limit, share.
+/// Accepted relative excess of the TCP acceleration.
 const TCP_TOLERANCE: f64 = 1e-3;
 
 struct Task<'a> {
@@ -115,13 +114,13 @@ impl Task<'_> {
             pace
         });
         let paces = paces.collect();
-        // The grid of a long path is large.
+        // Free the large grid before the average is computed.
         drop(grid);
         let timing = Averaged::new(path, profile, planning.average);
         Ok((TimedMotion::Path((*path).clone(), Box::new(timing)), paces))
     }
 
-    /// Time that the average adds to a leg that begins or ends at rest, s.
+    /// Time that the average adds to a leg with a start or end at rest, s.
     fn smoothing(&self, leg: usize) -> f64 {
         let average = &self.planning.average;
         let legs = self.path.legs();
@@ -140,10 +139,10 @@ impl Task<'_> {
     }
 }
 
-/// Excess over `\T` that still keeps it, share.
+/// Accepted relative excess over `\T`.
 const TIME_KEPT: f64 = 1e-3;
 
-/// The profile in exactly the time of its legs, where all have one and it does not take longer.
+/// The profile scaled to the exact time of its legs, if all are timed and it is not slower.
 fn exact(profile: Profile, legs: &[TimedLeg]) -> Profile {
     let time: Option<f64> = legs.iter().map(|leg| leg.time).sum();
     match time {

@@ -1,4 +1,4 @@
-//! Polynomials of degree 5 over time, one for each joint.
+//! Quintic polynomials over time, one per joint.
 
 use crate::retime::path::joint_path::{DOF, Joints, quintic};
 
@@ -6,7 +6,7 @@ use crate::retime::path::joint_path::{DOF, Joints, quintic};
 #[derive(Clone, Debug)]
 pub(super) struct Quintics {
     begin: f64,
-    /// Of each power, lowest first: all joints side by side, so that they are worked out at once.
+    /// Per power, lowest first, of all joints, for vectorised evaluation.
     coefficients: [Joints; 6],
 }
 

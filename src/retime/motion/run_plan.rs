@@ -20,14 +20,14 @@ pub(super) struct Planned {
     pub motions: Vec<(f64, TimedMotion)>,
     /// Duration of each movement (s) and the limit that determines it.
     pub pieces: Vec<(f64, Pace)>,
-    /// What went wrong at which leg.
+    /// Index of a leg and the problem on it.
     pub problem: Option<(usize, String)>,
-    /// Time at rest before the next movement, s; a timed movement has it in its time.
+    /// Time at rest before the next movement, s; the time of a timed movement includes it.
     pub settling_s: f64,
 }
 
-/// Plans the legs of movements; `times` are their `\T` under the overrides (s), `settings` those
-/// in force at the first of them.
+/// Plans the legs of movements; `times` are their `\T` under the overrides (s), `settings` those of
+/// the first movement.
 pub(super) fn plan_run(
     loaded: Loaded<'_>,
     legs: &[Leg],
@@ -41,14 +41,13 @@ pub(super) fn plan_run(
     }
 }
 
-/// A run of timed `MoveAbsJ` whose zones are large enough for the half-distance cut.
+/// The stream of a run of timed `MoveAbsJ`, if all zones reach half the distance of their points.
 fn as_stream(legs: &[Leg], movements: &[Movement], times: &[Option<f64>]) -> Option<Stream> {
     if movements.iter().any(|movement| movement.form != MoveForm::AbsJ) {
         return None;
     }
     let intervals: Option<Vec<f64>> = times.iter().copied().collect();
-    // Distances between neighbouring points; the robot's own place does not count for zones
-    // of the points after it.
+    // Distances between points only: the start position does not limit zones of later points.
     for pair in legs.windows(2) {
         let apart = pair[1].target.translation.vector - pair[0].target.translation.vector;
         if pair[0].zone.tcp < 0.5 * apart.norm() {
@@ -60,11 +59,11 @@ fn as_stream(legs: &[Leg], movements: &[Movement], times: &[Option<f64>]) -> Opt
 }
 
 fn realise(loaded: Loaded<'_>, stream: Stream, planning: Planning) -> Planned {
-    // Points that cannot be reached in time are reached later.
+    // Points that cannot be reached in time are reached late.
     let asked = stream.duration();
     let stream = within_limits(loaded, stream);
     let pace = if stream.duration() > asked { Pace::Acceleration } else { Pace::Time };
-    // A point's share of the time: up to the middle of the corner at it.
+    // The time of a point ends in the middle of its corner.
     let times = stream.knots().times();
     let count = stream.points().len();
     let pieces = (0..count).map(|i| {
@@ -74,7 +73,7 @@ fn realise(loaded: Loaded<'_>, stream: Stream, planning: Planning) -> Planned {
         (end - begin, pace)
     });
     let pieces = pieces.collect();
-    // The law of a stream does not describe its end: the settling is that of other movements.
+    // The stream model has no settling of its own: use that of other movements.
     let settling_s = if count > 1 { planning.settling_s } else { settling_after(pace, &planning) };
     let motions = vec![(0.0, TimedMotion::Stream(stream))];
     Planned { motions, pieces, problem: None, settling_s }
@@ -91,14 +90,14 @@ fn plan_paths(
     let caps: Vec<SpeedCap> =
         legs.iter().zip(movements).map(|(leg, movement)| cap(leg, movement)).collect();
     let planning = Planning::new(model, settings);
-    // An early end needs more acceleration than the rest of the motion.
+    // An early end needs a larger acceleration than the rest of the motion.
     let planning = if tcp_limits::limited(&caps) { planning.complete() } else { planning };
     let limits = motion_limits(model, 1.0);
     let mut pieces = vec![(0.0, Pace::None); legs.len()];
     let (paths, mut problem) = match build(model, legs) {
         Ok(paths) => (paths, None),
         Err(error) => {
-            // An estimate of the time: joint movements to the same points.
+            // Estimate the time by joint movements to the same points.
             let joint: Vec<Leg> =
                 legs.iter().map(|leg| Leg { kind: LegKind::Joint, ..leg.clone() }).collect();
             let hint = "its time is estimated joint by joint, the real one is longer";
@@ -118,7 +117,7 @@ fn plan_paths(
                 break;
             }
         };
-        // Where there is no room for a zone the robot stops as at a stop point.
+        // Without space for a zone the robot stops as at a stop point.
         if let (Some(last), false) = (indices.start.checked_sub(1), motions.is_empty()) {
             let settling = settling_after(pieces[last].1, &planning);
             pieces[last].0 += settling;
@@ -148,7 +147,7 @@ fn settling_after(pace: Pace, planning: &Planning) -> f64 {
     if pace == Pace::Time { 0.0 } else { planning.settling_s }
 }
 
-/// The programmed speed of a movement as a cap; a timed one has none but its time.
+/// The speed cap of a movement; a timed one has no speed limit.
 fn cap(leg: &Leg, movement: &Movement) -> SpeedCap {
     let settings = &movement.settings;
     let limits = SpeedCap {

@@ -1,4 +1,4 @@
-//! From a joint path to the grid that the timing solvers see.
+//! The timing grid of a joint path.
 
 use rayon::prelude::*;
 
@@ -12,18 +12,18 @@ use crate::retime::path::joint_path::{
     DOF, Extent, JointPath, Joints, PathPoint as PiecePoint, Piece, PieceKind,
 };
 
-/// Limits that the program sets for one leg.
+/// Programmed limits of one leg.
 #[derive(Clone, Copy, Debug)]
 pub struct SpeedCap {
-    /// TCP speed, m/s; of a joint movement its mean.
+    /// TCP speed, m/s; the mean for a joint movement.
     pub tcp: f64,
-    /// TCP speed at each instant, m/s: between corner zones, and in them.
+    /// Instantaneous TCP speed, m/s: between corner zones, and in them.
     pub peak: [f64; 2],
     /// Joint speeds, rad/s.
     pub joints: Joints,
     /// Reorientation speed, rad/s.
     pub orientation: f64,
-    /// Share of the robot's accelerations.
+    /// Share of the robot accelerations.
     pub acceleration: f64,
     /// Acceleration and deceleration of the TCP along its path, m/s².
     pub path_acceleration: [f64; 2],
@@ -32,7 +32,7 @@ pub struct SpeedCap {
 }
 
 impl SpeedCap {
-    /// No limit but the robot's own.
+    /// No programmed limit.
     pub const NONE: SpeedCap = SpeedCap {
         tcp: f64::INFINITY,
         peak: [f64::INFINITY; 2],
@@ -49,7 +49,7 @@ impl SpeedCap {
 pub struct Loaded<'a> {
     /// The robot.
     pub model: &'a Model,
-    /// What the flange carries.
+    /// Tool and payload.
     pub load: &'a Load,
 }
 
@@ -57,13 +57,13 @@ pub struct Loaded<'a> {
 const LEG_INTERVALS: usize = 4;
 /// Intervals of a zone.
 const ZONE_INTERVALS: usize = 8;
-/// Halvings of the first and the last interval: a slow motion reaches its speed early.
+/// Halvings of the first and last interval: a slow motion reaches its speed early.
 const END_HALVINGS: i32 = 8;
-/// Nodes nearer to each other than this are one, m of the path or share of a short one.
+/// Nodes closer to each other are merged; m of the path or share of a short one.
 const NODE_DISTANCE: (f64, f64) = (1e-5, 1e-4);
 
-/// Nodes in s: about `count` intervals in all, closer towards the ends of the legs, where speeds
-/// change; nodes of the zones; and nodes at narrow peaks of joint speeds.
+/// Nodes in s: about `count` intervals in total, denser at the ends of legs, where speeds change;
+/// nodes of the zones; and nodes at narrow peaks of joint speeds.
 pub fn nodes(model: &Model, path: &JointPath, caps: &[SpeedCap], count: usize) -> Vec<f64> {
     let length = path.length();
     let mut nodes = vec![0.0];
@@ -82,7 +82,7 @@ pub fn nodes(model: &Model, path: &JointPath, caps: &[SpeedCap], count: usize) -
         let [first, last] = ends.map(|interval| interval * 0.5_f64.powi(k));
         nodes.extend([first, length - last]);
     }
-    // Evenly in each zone, whatever pieces it consists of.
+    // Uniform in each zone, independent of its pieces.
     nodes.extend(zones(path).into_iter().flat_map(zone_nodes));
     nodes.sort_by(f64::total_cmp);
     let apart = NODE_DISTANCE.0.min(NODE_DISTANCE.1 * length);
@@ -109,12 +109,12 @@ pub fn nodes(model: &Model, path: &JointPath, caps: &[SpeedCap], count: usize) -
     nodes
 }
 
-/// By how much a joint may exceed its largest speed between two nodes.
+/// Accepted ratio of a joint speed between two nodes to its limit.
 const PEAK: f64 = 1.002;
-/// Times that an interval is halved for that.
+/// Largest number of halvings of an interval for this.
 const PEAK_HALVINGS: usize = 8;
 
-/// The largest ṡ² that the joints' speeds and the programmed one allow at a place.
+/// The largest ṡ² under the joint speed limits and the programmed speed.
 struct SpeedBounds<'a> {
     joints: &'a [f64],
     path: &'a JointPath,
@@ -131,8 +131,8 @@ impl SpeedBounds<'_> {
         programmed.min(joints).powi(2)
     }
 
-    /// Adds nodes between two where ṡ², linear between them, would exceed the bound: near a
-    /// singularity the speeds of joints have narrow peaks.
+    /// Adds nodes where ṡ², linear between two nodes, would exceed the bound: joint speeds have
+    /// narrow peaks near a singularity.
     fn peaks(&self, [begin, end]: [(f64, f64); 2], halvings: usize, nodes: &mut Vec<f64>) {
         let s = 0.5 * (begin.0 + end.0);
         let middle = (s, self.square(s));
@@ -144,7 +144,7 @@ impl SpeedBounds<'_> {
     }
 }
 
-/// Begin and end of each zone.
+/// Start and end of each zone in s.
 fn zones(path: &JointPath) -> Vec<(f64, f64)> {
     let is_zone =
         |piece: &Piece| matches!(piece.kind, PieceKind::CartesianZone | PieceKind::JointZone);
@@ -152,7 +152,7 @@ fn zones(path: &JointPath) -> Vec<(f64, f64)> {
     let mut corner = None;
     for piece in path.pieces().iter().filter(|piece| is_zone(piece)) {
         let end = piece.s + piece.length;
-        // Zones may touch: one lies around the end of each leg.
+        // Zones may touch; each lies around the end of one leg.
         let before = piece.leg.checked_sub(1).map_or(0.0, |leg| path.leg_end(leg));
         let starts = piece.s - before < path.leg_end(piece.leg) - end;
         let around = if starts { piece.leg.saturating_sub(1) } else { piece.leg };
@@ -170,7 +170,7 @@ fn zone_nodes((begin, end): (f64, f64)) -> impl Iterator<Item = f64> {
     (0..=ZONE_INTERVALS).map(move |i| begin + (end - begin) * i as f64 / ZONE_INTERVALS as f64)
 }
 
-/// The grid at these nodes, with the speed caps of the legs.
+/// The grid at these nodes with the speed caps of the legs.
 ///
 /// # Errors
 /// Values that are not finite.
@@ -193,10 +193,10 @@ pub fn grid(
     PathGrid::new(nodes.to_vec(), stretches.concat())
 }
 
-/// Intervals of one parallel task: fewer are not worth another thread.
+/// Intervals per parallel task.
 const TOGETHER: usize = 128;
 
-/// Begin and end of each interval between some nodes.
+/// Values at both ends of each interval between the nodes.
 fn ends(
     loaded: Loaded<'_>,
     path: &JointPath,
@@ -219,7 +219,7 @@ fn ends(
             extent: path.extent(piece.leg),
             zone: zone.map(|(begin, end)| end - begin),
         };
-        // Within a leg and a zone a path is smooth: both sides of a node have the same values.
+        // Within a leg and a zone the path is smooth: both sides of a node have the same values.
         let stretch = (piece.leg, piece.kind, limits.zone);
         let begin = match ends.last() {
             Some([_, end]) if before == Some(stretch) => *end,
@@ -231,11 +231,11 @@ fn ends(
     ends
 }
 
-/// What bounds the speed on an interval besides the joints.
+/// Speed bounds of an interval other than the joint limits.
 struct Bounds<'a> {
     cap: &'a SpeedCap,
     extent: Extent,
-    /// Length of the zone that holds it.
+    /// Length of the zone that contains it.
     zone: Option<f64>,
 }
 
@@ -265,7 +265,7 @@ fn point(
     let tcp_rate = twist.fixed_rows::<3>(0).norm();
     let turn_rate = twist.fixed_rows::<3>(3).norm();
     limit(tcp_rate, model.limits.tcp_speed.unwrap_or(f64::INFINITY), SpeedBound::Robot);
-    // The joints keep their ratio: the programmed speed holds on the average.
+    // Joints keep their ratio, so the programmed speed holds on average.
     let (programmed, turn) = match piece.kind {
         PieceKind::Joint | PieceKind::JointZone => {
             (extent.length / extent.extent, extent.angle / extent.extent)
@@ -276,7 +276,7 @@ fn point(
     limit(tcp_rate, cap.peak[usize::from(zone.is_some())], SpeedBound::Programmed);
     limit(turn, cap.orientation, SpeedBound::Reorientation);
     if let Some(zone) = zone {
-        // The interpolator takes at least one step in each zone: runs with z1 show it.
+        // The interpolator takes at least one step per zone, as runs with z1 show.
         limit(1.0, zone / interpolation_s(model), SpeedBound::Zone);
     }
     let (v_max, v_bound) = slowest;
@@ -306,11 +306,11 @@ fn point(
     point
 }
 
-/// Inner radius of a regular octagon around the unit circle, and of its corners.
+/// Inradius of a regular octagon in the unit circle; the same times √2 for its diagonal sides.
 const OCTAGON: [f64; 2] = [0.923_879_532_511_286_7, 1.306_562_964_876_376_5];
 
 /// The rows of `PathAccLim` and `WorldAccLim`: with p' and p'' of the TCP the acceleration is
-/// p' s̈ + p'' ṡ², split into its part along the path and across it.
+/// p' s̈ + p'' ṡ², split into the components along and across the path.
 fn tcp_rows(
     model: &Model,
     at: &PiecePoint,
@@ -341,7 +341,7 @@ fn tcp_rows(
         ..Row::default()
     };
     if up.is_finite() || down.is_finite() {
-        // A side without a limit has a very large one.
+        // An unlimited side has a very large limit.
         let [up, down] = [up, down].map(|x| x.min(NO_ACCELERATION_LIMIT));
         let half = 0.5 * (up + down);
         rows[0] = row(1.0, 0.0, half, 0.5 * (down - up) / half);
@@ -356,10 +356,10 @@ fn tcp_rows(
     rows
 }
 
-/// An acceleration that no robot has, m/s².
+/// Stands for an unlimited acceleration, m/s².
 const NO_ACCELERATION_LIMIT: f64 = 1e3;
 
-/// Joint rate on the path below which it is rounding, rad per unit of s.
+/// Joint rate on the path at rounding level, rad per unit of s.
 const STILL: f64 = 1e-9;
 
 /// The sign of a joint rate, 0 at rest.

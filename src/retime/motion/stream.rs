@@ -1,30 +1,30 @@
-//! How a controller realises a stream of `MoveAbsJ …\T` points: the one place that knows.
+//! The model of a controller that executes a stream of `MoveAbsJ …\T` points.
 //!
-//! The zones of a stream are large enough for the half-distance cut, so the realised motion is
-//! the quadratic B-spline of the points P₁…Pₙ, P₀ being where the robot stands. With the
-//! intervals d₁…dₙ of their `\T` the knots are
+//! The zones of a stream reach half the distance of its points, so the realised motion is the
+//! quadratic B-spline of the points P₁…Pₙ with the start position P₀. With the intervals d₁…dₙ of
+//! their `\T` the knots are
 //!
 //! t₀ = 0, tᵢ = the middle of interval i, tₙ₊₁ = Σ d,
 //!
-//! except that t₁ and tₙ lie two thirds of their interval away from the rest (a single point:
-//! the middle). The joint velocity is 0 at both ends, vᵢ = (Pᵢ − Pᵢ₋₁) / Hᵢ with
-//! Hᵢ = (tᵢ₊₁ − tᵢ₋₁)/2 at tᵢ, and linear between knots. It follows that the spline is
-//! local: q(tᵢ) = Pᵢ₋₁ + (Pᵢ − Pᵢ₋₁) (tᵢ − tᵢ₋₁) / (tᵢ₊₁ − tᵢ₋₁).
+//! except that t₁ and tₙ lie two thirds of their interval away from the rest (for a single point in
+//! the middle). The joint velocity is 0 at both ends, vᵢ = (Pᵢ − Pᵢ₋₁) / Hᵢ at tᵢ with
+//! Hᵢ = (tᵢ₊₁ − tᵢ₋₁)/2, and linear between knots. Hence the spline is local:
+//! q(tᵢ) = Pᵢ₋₁ + (Pᵢ − Pᵢ₋₁) (tᵢ − tᵢ₋₁) / (tᵢ₊₁ − tᵢ₋₁).
 //!
-//! This law is inferred from the documented zone rules. It is not measured on a robot.
+//! This model is inferred from the documented zone rules and not measured on a robot.
 
 use std::ops::Range;
 
 pub use crate::retime::path::joint_path::{DOF, Joints};
 
-/// Size of the zones of a stream, `z200`, m: points farther apart than twice this are cut at the
-/// zone and not at half the distance.
+/// Zone size of a stream, `z200`, m: the zones of points at more than twice this distance do not
+/// reach half of it.
 pub const LARGEST_ZONE: f64 = 0.2;
 
 /// Share of the first and of the last interval between the rest and the nearest inner knot.
 const END_KNOT: f64 = 2.0 / 3.0;
 
-/// Why points and intervals do not make a stream.
+/// Error in the points and intervals of a stream.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum StreamError {
     /// No points.
@@ -38,7 +38,7 @@ pub enum StreamError {
         /// Number of intervals.
         intervals: usize,
     },
-    /// An interval that is no time.
+    /// An interval that is not a positive finite time.
     #[error("interval {index} of a stream is {seconds} s; give a positive finite time")]
     Interval {
         /// Index from 0.
@@ -46,7 +46,7 @@ pub enum StreamError {
         /// The refused value, s.
         seconds: f64,
     },
-    /// A point that is no position.
+    /// A point that is not finite.
     #[error("point {index} of a stream is not finite; give joint angles in radians")]
     Point {
         /// Index into P₀…Pₙ (0 is the start).
@@ -54,18 +54,18 @@ pub enum StreamError {
     },
 }
 
-/// The knots of a stream of n points: t₀ = 0 … tₙ₊₁ = Σ `\T`, s. They depend on the intervals
-/// alone, so with fixed intervals the realised motion is linear in the points.
+/// The knots of a stream of n points: t₀ = 0 … tₙ₊₁ = Σ `\T`, s. They depend on the intervals only,
+/// so with fixed intervals the realised motion is linear in the points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Knots {
     times: Vec<f64>,
 }
 
-/// The realised motion at one time as weights on the control points P₀ (the start) … Pₙ:
-/// q = Σ `position[k]` · P[`support.start` + k], and so on. Entries beyond the support are 0.
+/// The realised motion at one time as weights of the control points P₀ (the start) … Pₙ:
+/// q = Σ `position[k]` · P[`support.start` + k], etc. Entries beyond the support are 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Weights {
-    /// The two or three control points that matter.
+    /// The two or three control points with weights.
     pub support: Range<usize>,
     /// Weights of q.
     pub position: [f64; 3],
@@ -126,23 +126,23 @@ impl Knots {
         self.times[piece + 1] - self.times[piece]
     }
 
-    /// Hᵢ = (tᵢ₊₁ − tᵢ₋₁)/2, s: the time by which Pᵢ − Pᵢ₋₁ is divided; 1 ≤ i ≤ n.
+    /// Hᵢ = (tᵢ₊₁ − tᵢ₋₁)/2, s: divisor of Pᵢ − Pᵢ₋₁; 1 ≤ i ≤ n.
     pub fn mean_length(&self, knot: usize) -> f64 {
         0.5 * (self.times[knot + 1] - self.times[knot - 1])
     }
 
-    /// The piece 0…n that holds `t`, the later one at a knot; outside the motion the nearest.
+    /// The piece 0…n at `t`, the later one at a knot; outside the motion the nearest one.
     pub fn piece_at(&self, t: f64) -> usize {
         let inner = &self.times[1..self.times.len() - 1];
         inner.partition_point(|knot| *knot <= t)
     }
 
-    /// Weights at the time `tau` (s) after the begin of `piece` (≤ n).
+    /// Weights at the time `tau` (s) after the start of `piece` (≤ n).
     pub fn weights(&self, piece: usize, tau: f64) -> Weights {
         let n = self.points();
         let h = self.piece_length(piece);
-        // (position, velocity, acceleration) factors of the increments Pₚ − Pₚ₋₁ (leaving)
-        // and Pₚ₊₁ − Pₚ (arriving).
+        // Factors (position, velocity, acceleration) of the increments Pₚ − Pₚ₋₁ (leaving) and
+        // Pₚ₊₁ − Pₚ (arriving).
         let leaving = (piece > 0).then(|| {
             let mean = self.mean_length(piece);
             let passed = 0.5 * self.piece_length(piece - 1);
@@ -171,20 +171,20 @@ impl Knots {
 /// One piece of the realised motion, with constant acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece {
-    /// Begin, s from the stream's start.
+    /// Start, s from the start of the stream.
     pub start: f64,
     /// Length, s.
     pub length: f64,
-    /// Joint positions at the begin, rad.
+    /// Joint angles at the start, rad.
     pub q: Joints,
-    /// Joint velocities at the begin, rad/s.
+    /// Joint velocities at the start, rad/s.
     pub qd: Joints,
     /// Joint accelerations, rad/s².
     pub qdd: Joints,
 }
 
 impl Piece {
-    /// (q, q̇, q̈) at the time `tau` (s) after the begin.
+    /// (q, q̇, q̈) at the time `tau` (s) after the start.
     pub fn at(&self, tau: f64) -> (Joints, Joints, Joints) {
         let q = std::array::from_fn(|j| self.q[j] + tau * (self.qd[j] + 0.5 * tau * self.qdd[j]));
         let qd = std::array::from_fn(|j| self.qd[j] + tau * self.qdd[j]);
@@ -192,7 +192,7 @@ impl Piece {
     }
 }
 
-/// A stream of joint points with the times of its segments, and its realised motion.
+/// A stream of joint points with their intervals, and its realised motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stream {
     start: Joints,
@@ -203,8 +203,8 @@ pub struct Stream {
 }
 
 impl Stream {
-    /// The stream from rest at `start` (P₀, rad) over `points` (P₁…Pₙ, rad) with the `\T` of
-    /// each (`intervals`, s, one per point).
+    /// The stream from rest at `start` (P₀, rad) through `points` (P₁…Pₙ, rad) with their `\T`
+    /// (`intervals`, s, one per point).
     ///
     /// # Errors
     /// No point, different lengths, intervals that are not positive, values that are not finite.
@@ -231,7 +231,7 @@ impl Stream {
         Ok(Stream { start, points, intervals, knots, velocities })
     }
 
-    /// P₀, rad: where the robot stands.
+    /// P₀, rad: the start position.
     pub fn start(&self) -> &Joints {
         &self.start
     }
@@ -246,7 +246,7 @@ impl Stream {
         &self.intervals
     }
 
-    /// Where the motion ends, rad: Pₙ.
+    /// Pₙ, rad: the end position.
     pub fn end(&self) -> &Joints {
         self.points.last().unwrap_or(&self.start)
     }
@@ -289,7 +289,7 @@ impl Stream {
         (0..=self.points.len()).map(|p| self.piece(p))
     }
 
-    /// The way from point to point P₀…Pₙ, 1 s each: what a robot does that stops at every point.
+    /// The edges P₀…Pₙ, 1 s each: the path of a robot that stops at every point.
     pub fn polygon(&self) -> impl Iterator<Item = Piece> + '_ {
         let from = std::iter::once(&self.start).chain(&self.points);
         from.zip(&self.points).enumerate().map(|(i, (from, to))| Piece {
@@ -301,8 +301,8 @@ impl Stream {
         })
     }
 
-    /// (q, q̇, q̈) at `t` (s). At a knot the acceleration is that of the later piece; before the
-    /// start and from the end on the robot rests at P₀ and Pₙ.
+    /// (q, q̇, q̈) at `t` (s). At a knot the acceleration is that of the later piece; outside the
+    /// motion the robot rests at P₀ or Pₙ.
     pub fn eval(&self, t: f64) -> (Joints, Joints, Joints) {
         let rest = [0.0; DOF];
         if t >= self.duration() {
@@ -325,8 +325,8 @@ impl Stream {
         max_abs(self.pieces().map(|p| p.qdd))
     }
 
-    /// Largest jerk of each joint, rad/s³: the change of acceleration at a knot over the mean of
-    /// the two pieces beside it; at the ends the change from and to zero over the one piece there.
+    /// Largest jerk of each joint, rad/s³: the change of acceleration at a knot over the mean
+    /// length of the two pieces at it; at both ends the acceleration over the length of the piece.
     pub fn max_jerk(&self) -> Joints {
         let n = self.points.len();
         let (first, last) = (self.piece(0), self.piece(n));
@@ -340,7 +340,7 @@ impl Stream {
     }
 }
 
-/// Per joint the largest absolute value.
+/// Largest absolute value per joint.
 fn max_abs(rows: impl Iterator<Item = Joints>) -> Joints {
     rows.fold([0.0; DOF], |max, row| std::array::from_fn(|j| max[j].max(row[j].abs())))
 }

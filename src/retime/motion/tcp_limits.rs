@@ -1,7 +1,7 @@
 //! `PathAccLim` and `WorldAccLim` on the averaged motion.
 //!
-//! The average keeps bounds on the joints but not on the TCP, whose position is not linear in them:
-//! the excess in corners is found by sampling the averaged motion.
+//! The average preserves bounds of the joints but not of the TCP, whose position is not linear in
+//! them: sampling the averaged motion finds the excess in corners.
 
 use super::sampling::SpeedCap;
 use super::timed::TimedMotion;
@@ -10,17 +10,17 @@ use crate::retime::path::JointPath;
 
 /// Longest step between two samples, s.
 const STEP: f64 = 0.002;
-/// A TCP slower than this has no direction, m/s.
+/// TCP speed below which its direction is undefined, m/s.
 const SLOW: f64 = 1e-4;
 
-/// True if a leg has a limit on the acceleration of its TCP.
+/// True if a leg has a limit on the TCP acceleration.
 pub(super) fn limited(caps: &[SpeedCap]) -> bool {
     caps.iter().any(|cap| {
         cap.world_acceleration.is_finite() || cap.path_acceleration.iter().any(|x| x.is_finite())
     })
 }
 
-/// The largest share of these limits that the motion uses on each leg of the path.
+/// The largest used share of these limits on each leg.
 pub(super) fn worst(
     model: &Model,
     path: &JointPath,

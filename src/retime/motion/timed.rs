@@ -18,7 +18,7 @@ pub enum TimedMotion {
 }
 
 impl TimedMotion {
-    /// s.
+    /// Duration, s.
     pub fn duration(&self) -> f64 {
         match self {
             TimedMotion::Path(_, timing) => timing.duration(),
@@ -26,7 +26,7 @@ impl TimedMotion {
         }
     }
 
-    /// The state at `t` after the start; outside, at rest at the nearer end.
+    /// The state at `t` after the start; outside the motion at rest at the nearer end.
     pub fn at(&self, t: f64) -> JointState {
         match self {
             TimedMotion::Path(_, timing) => timing.at(t),
@@ -37,7 +37,7 @@ impl TimedMotion {
         }
     }
 
-    /// The rates of the joints at `t`, rad/s.
+    /// Joint velocities at `t`, rad/s.
     pub fn rates(&self, t: f64) -> Joints {
         match self {
             TimedMotion::Path(_, timing) => timing.rates(t),
@@ -45,7 +45,7 @@ impl TimedMotion {
         }
     }
 
-    /// Times between which every joint moves smoothly, from 0 to the duration.
+    /// Times between which the motion is smooth, from 0 to the duration.
     pub fn knots(&self) -> &[f64] {
         match self {
             TimedMotion::Path(_, timing) => timing.knots(),
@@ -53,7 +53,7 @@ impl TimedMotion {
         }
     }
 
-    /// The time at which a path motion passes s; of a stream, 0.
+    /// The time at which a path motion passes s; 0 for a stream.
     pub fn time_at(&self, s: f64) -> f64 {
         match self {
             TimedMotion::Path(path, timing) if s >= path.length() => timing.duration(),

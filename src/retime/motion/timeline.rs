@@ -15,31 +15,31 @@ use crate::retime::path::joint_path::Joints;
 pub struct Simulation {
     /// The events in order; their durations add up to the cycle.
     pub events: Vec<Event>,
-    /// s.
+    /// Duration of the cycle, s.
     pub cycle_s: f64,
-    /// The first event of a loop that never ends; one pass of it is in the events.
+    /// The first event of an endless loop; the events contain one pass of it.
     pub repeats_from: Option<usize>,
-    /// What could not be simulated.
+    /// Statements that could not be simulated.
     pub unresolved: Vec<Note>,
-    /// What was assumed about the program.
+    /// Assumptions about the program.
     pub assumed: Vec<String>,
     /// Lower-case names of the inputs that the cycle waits for.
     pub inputs_asked: BTreeSet<String>,
 }
 
-/// Something on the time line.
+/// An entry of the time line.
 #[derive(Debug)]
 pub struct Event {
-    /// s from the start of the cycle.
+    /// Start, s from the start of the cycle.
     pub t_start: f64,
-    /// s.
+    /// Duration, s.
     pub duration: f64,
-    /// What.
+    /// Its kind and data.
     pub what: What,
 }
 
 impl Event {
-    /// Whether it is an output between fly-by movements, which stands before their run.
+    /// Whether it is an output between fly-by movements, which precedes their run in the list.
     pub fn is_within_next_run(&self) -> bool {
         matches!(&self.what, What::Output(_, position) if *position > 0)
     }
@@ -52,32 +52,32 @@ pub enum What {
     Run(Box<Run>),
     /// A wait.
     Wait(Box<WaitRecord>),
-    /// A change of an output, and the number of fly-by movements that were under way.
+    /// A change of an output, and the number of fly-by movements in progress.
     Output(Output, usize),
-    /// A movement that could not be simulated; the robot may stand elsewhere afterwards.
+    /// A movement that could not be simulated; the position after it is unknown.
     Left(Unresolved),
 }
 
 /// Movements from rest to rest.
 #[derive(Debug)]
 pub struct Run {
-    /// The movements with their share of the time.
+    /// The movements with their times.
     pub moves: Vec<MoveRecord>,
-    /// Their geometry, one for each movement.
+    /// Their geometry, one leg per movement.
     pub legs: Vec<Leg>,
-    /// The motions one after the other, each with its start in the run, s.
+    /// The consecutive motions with their starts in the run, s.
     pub motions: Vec<(f64, TimedMotion)>,
     /// Tool and payload.
     pub load: Load,
-    /// Joints at the start, rad.
+    /// Joint angles at the start, rad.
     pub start: Joints,
-    /// Joints at the end, rad.
+    /// Joint angles at the end, rad.
     pub end: Joints,
     /// Time at rest at the end, s.
     pub settling: f64,
-    /// False if its start is not known.
+    /// False if the start position is unknown.
     pub start_known: bool,
-    /// Why the path could not be followed as programmed.
+    /// Reason why the path could not be followed as programmed.
     pub problem: Option<String>,
 }
 
@@ -87,7 +87,7 @@ impl Run {
         self.moves.iter().map(|m| m.duration).sum()
     }
 
-    /// The motions that may be under way between two times, s from the start of the run.
+    /// The motions between two times, s from the start of the run.
     pub fn motions_between(&self, from: f64, to: f64) -> &[(f64, TimedMotion)] {
         let first = self.motions.partition_point(|(begin, _)| *begin <= from).saturating_sub(1);
         let last = self.motions.partition_point(|(begin, _)| *begin < to);
@@ -112,36 +112,36 @@ impl Run {
 pub struct MoveRecord {
     /// The movement.
     pub movement: Movement,
-    /// s from the start of the run.
+    /// Start, s from the start of the run.
     pub t_start: f64,
-    /// s.
+    /// Duration, s.
     pub duration: f64,
-    /// What sets its pace.
+    /// The limit that determines its speed.
     pub pace: Pace,
 }
 
-/// A wait with its length.
+/// A wait with its duration.
 #[derive(Debug)]
 pub struct WaitRecord {
     /// The wait.
     pub wait: Wait,
-    /// Where its length comes from.
+    /// Source of its duration.
     pub basis: WaitBasis,
-    /// Where the robot stands, rad.
+    /// Joint angles, rad.
     pub q: Joints,
-    /// Tool and payload that it holds.
+    /// Tool and payload.
     pub load: Load,
-    /// False if it may stand elsewhere.
+    /// False if the position is uncertain.
     pub position_known: bool,
 }
 
-/// Where the length of a wait comes from.
+/// Source of the duration of a wait.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WaitBasis {
-    /// The program states it.
+    /// The program.
     Stated,
-    /// The user stated when the input comes.
+    /// The user states the time of the input.
     Input,
-    /// Not known: 0 s.
+    /// Unknown, taken as 0 s.
     Unknown,
 }

@@ -1,4 +1,4 @@
-//! The virtual controller: executes a program and lays its movements on a time line.
+//! The virtual controller: executes a program and places its movements on a time line.
 
 mod draft;
 mod layout;

@@ -1,4 +1,4 @@
-//! Joint loads that a stream may use: where limits are assumed, no more than the program uses.
+//! Joint loads that a stream may use. Assumed limits are lowered to the loads of the program.
 
 use crate::arm::dynamics::Data;
 use crate::arm::robot::Model;
@@ -7,13 +7,12 @@ use crate::retime::motion::Simulation;
 use crate::retime::motion::timeline::{Run, What};
 use crate::retime::path::joint_path::{DOF, Joints};
 
-/// Step of the samples of a run, s: half a period of the interpolator.
+/// Sample step of a run, s: half the period of the interpolator.
 const STEP: f64 = 0.002;
 
-/// Least share of a limit that a joint gets: a joint at rest in the program still holds, and moves by
-/// rounding.
+/// Smallest allowed share of a limit: a joint at rest has holding torque and moves by rounding.
 const LEAST: f64 = 0.02;
-/// Share of assumed limits for motions that the program does not have.
+/// Smallest allowed share of an assumed limit for motions that the program does not contain.
 const OTHER_WAYS: f64 = 0.5;
 
 /// Joint loads.
@@ -42,8 +41,8 @@ impl Loads {
         }
     }
 
-    /// Loads that streams may use in the place of a program's movements: where the limits of the robot
-    /// are assumed, no more than the program itself uses, which the robot has proved.
+    /// Loads that a stream may use. A known limit is used in full; an assumed limit is lowered to
+    /// the largest load of the program, which the robot can execute.
     pub fn shown(model: &Model, simulation: &Simulation) -> Loads {
         let mut most = Loads { acceleration: NONE, jerk: NONE, torque: NONE };
         for event in &simulation.events {
@@ -64,7 +63,7 @@ impl Loads {
         }
     }
 
-    /// The same for motions that the program does not have, in which other joints may move: at least
+    /// Loads for motions that the program does not contain and that move other joints: at least
     /// [`OTHER_WAYS`] of the limits.
     #[must_use]
     pub fn for_other_ways(&self, model: &Model) -> Loads {
@@ -101,7 +100,7 @@ impl Loads {
 
 const NONE: Joints = [0.0; DOF];
 
-/// Number and length of the steps in a time, s.
+/// Number and length (s) of the sample steps in a duration.
 pub(super) fn steps(duration: f64) -> (usize, f64) {
     let count = (duration / STEP).ceil().max(1.0);
     (count as usize, duration / count)

@@ -1,4 +1,4 @@
-//! A stream near an intended motion: placed, fitted, polished and checked.
+//! Fits a stream to a motion, polishes it and checks it.
 
 use super::check::Check;
 use super::margins::Margins;
@@ -16,34 +16,34 @@ use crate::retime::motion::stream::{LARGEST_ZONE, Stream};
 use crate::retime::motion::timing::profile::Profile;
 use crate::retime::path::joint_path::Joints;
 
-/// Points of a stream, at least.
+/// Smallest number of points of a stream.
 const LEAST_POINTS: usize = 2;
-/// Acceleration of the TCP that a motion is expected to have between ceilings, m/s².
+/// Assumed TCP acceleration between two speed ceilings, m/s².
 const EASING: f64 = 10.0;
-/// Largest distance of two points, as a share of the reach of their zones.
+/// Largest distance of two points, as a share of the length that their zones cover.
 const ZONE_SHARE: f64 = 0.95;
-/// The share that is asked for where that is exceeded: other rules shift the points, too.
+/// The share that is used when [`ZONE_SHARE`] is exceeded; other rules move the points too.
 const CLOSER: f64 = 0.6;
-/// Step of the samples of an intended motion, s.
+/// Sample step of a reference motion, s.
 const REFERENCE_STEP: f64 = 0.005;
 
-/// A realised stream with its check.
+/// A rounded stream with its check.
 pub(super) struct Attempt {
     pub(super) stream: Stream,
     pub(super) check: Check,
-    /// The start for more polishing.
+    /// The unrounded stream, from which polishing may continue.
     pub(super) intended: Intended,
 }
 
-/// A motion on the path and a stream near it.
+/// A reference motion and a stream that approximates it.
 pub(super) struct Intended {
     reference: Reference,
     stream: Stream,
 }
 
 impl RunProblem<'_> {
-    /// Where the margins leave no timing on the path, the polishing starts from the motion of the run
-    /// itself, which keeps all limits and takes this time.
+    /// The original motion as the start of polishing, if the margins leave no timing on the path:
+    /// it keeps all limits and takes this time.
     pub(super) fn as_before(
         &self,
         reason: Reason,
@@ -61,7 +61,7 @@ impl RunProblem<'_> {
         }
     }
 
-    /// A stream of this duration fitted to a profile.
+    /// A stream of this duration (s) fitted to a profile.
     pub(super) fn intend(
         &self,
         profile: &Profile,
@@ -103,7 +103,7 @@ impl RunProblem<'_> {
             spacing.longest = CLOSER * reach;
             intervals = adaptive_intervals(&reference, duration, &spacing);
         }
-        // In the model of the controller a stop after a single point has no settling.
+        // The controller model has no settling at a stop after a single point.
         if intervals.len() < LEAST_POINTS {
             let interval = duration / LEAST_POINTS as f64;
             if interval < self.task.spacing_s {
@@ -123,7 +123,7 @@ impl RunProblem<'_> {
         }
     }
 
-    /// The stream polished, rounded as it will be emitted and checked.
+    /// Polishes the stream, rounds its points to the digits of the emitted code and checks it.
     pub(super) fn realise(&self, intended: Intended, margins: &Margins) -> Result<Attempt, Reason> {
         let Intended { reference, stream } = intended;
         let plant = RunPlant {
@@ -142,7 +142,7 @@ impl RunProblem<'_> {
         Ok(Attempt { stream: rounded, check, intended })
     }
 
-    /// Time in which the TCP goes no farther than the zones of two points reach, s.
+    /// Time in which the TCP travels at most the length that the zones of two points cover, s.
     fn zone_time(&self, reference: &Reference, duration: f64) -> f64 {
         let tool = &self.task.run.legs[0].tool;
         let tcp = |t: f64| tool.pose(&fk(self.task.model, &reference.at(t).0)).translation.vector;

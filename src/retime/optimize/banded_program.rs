@@ -1,9 +1,8 @@
-//! Convex quadratic programs whose matrix and rows touch neighbouring variables only.
+//! Convex quadratic programs with a banded matrix and rows of neighbouring variables.
 //!
 //! A primal-dual interior point method with Mehrotra's predictor and corrector (Nocedal and
-//! Wright, Numerical Optimization, 2006, algorithm 16.4). A row adds its outer product to the
-//! matrix of the linear system, which so stays banded: an iteration takes time linear in the
-//! number of variables, where a general sparse solver spends most of it on bookkeeping.
+//! Wright, Numerical Optimization, 2006, algorithm 16.4). The outer products of the rows keep the
+//! linear system banded, so the time of an iteration is linear in the number of variables.
 
 use super::banded::{Banded, Cholesky};
 
@@ -34,20 +33,20 @@ impl Row {
     }
 }
 
-/// An optimum within the gap that was asked for.
+/// An optimum within the required gap.
 pub(super) struct Optimum {
     pub(super) x: Vec<f64>,
     /// The whole objective.
     pub(super) cost: f64,
 }
 
-/// Iterations before the method gives up; usual are 8 to 20.
+/// Largest number of iterations; 8 to 20 are usual.
 const MAX_ITERATIONS: usize = 60;
-/// Share of the way to the boundary that a step goes.
+/// Length of a step as a share of the step to the boundary.
 const TO_BOUNDARY: f64 = 0.995;
-/// Least slack and multiplier at first.
+/// Smallest initial slack and multiplier.
 const BEGIN: f64 = 1e-2;
-/// Residual of the rows and of the gradient at the end, relative to their size.
+/// Largest residual of the rows and of the gradient at the optimum, relative to their size.
 const RESIDUAL: f64 = 1e-7;
 
 /// Slack w ≥ 0 of a row, its violation s ≥ 0, and their multipliers λ and price − λ.
@@ -58,26 +57,26 @@ struct State {
     lambda: f64,
 }
 
-/// How far an iterate is from the optimum.
+/// Violation of the optimality conditions.
 struct Residuals {
     /// Gradient of the Lagrangian.
     dual: Vec<f64>,
-    /// Of the rows with their slacks.
+    /// Residual of the rows with their slacks.
     primal: Vec<f64>,
-    /// Σ of the products that vanish at the optimum.
+    /// Sum of the products that vanish at the optimum.
     complement: f64,
     /// The objective.
     cost: f64,
 }
 
-/// A Newton step: of x, and of the state of each row.
+/// A Newton step of x and of the state of each row.
 struct Direction {
     x: Vec<f64>,
     states: Vec<State>,
 }
 
 impl BandedProgram {
-    /// Solves the program to a gap relative to 1 + |objective|. None if it does not get there.
+    /// Solves the program to a gap relative to 1 + |objective|. None if it does not converge.
     pub(super) fn solve(&self, gap: f64) -> Option<Optimum> {
         let mut x = vec![0.0; self.gradient.len()];
         let mut states: Vec<State> = self.rows.iter().map(State::first).collect();
@@ -183,8 +182,8 @@ impl BandedProgram {
         Direction { x, states }
     }
 
-    /// The reductions with Mehrotra's correction: second-order terms of the predictor, and the
-    /// centring that its reach suggests.
+    /// The reductions with Mehrotra's correction: the second-order terms of the predictor and the
+    /// centring that follows from its step length.
     fn corrected(
         &self,
         reductions: &[(f64, f64)],
@@ -216,7 +215,7 @@ impl BandedProgram {
         smooth + soft.map(|(row, state)| row.price * state.s).sum::<f64>()
     }
 
-    /// The largest step, up to a bit over 1, that keeps everything positive.
+    /// The largest step, at most slightly over 1, that keeps all slacks and multipliers positive.
     fn reach(&self, states: &[State], changes: &[State]) -> f64 {
         let mut reach: f64 = 1.0 / TO_BOUNDARY;
         for (row, (state, change)) in self.rows.iter().zip(states.iter().zip(changes)) {
@@ -237,8 +236,7 @@ impl BandedProgram {
 }
 
 impl Residuals {
-    /// Whether the complement is below the gap, and the residuals are rounding; relative to
-    /// 1 + |objective|.
+    /// Whether the complement is at most the gap and the residuals are at rounding level.
     fn are_within(&self, gap: f64) -> bool {
         let size = 1.0 + self.cost.abs();
         self.complement <= gap * size
@@ -254,7 +252,7 @@ impl Row {
 }
 
 impl State {
-    /// At x = 0.
+    /// The state at x = 0.
     fn first(row: &Row) -> State {
         let s = if row.is_soft() { (-row.bound).max(0.0) + BEGIN } else { 0.0 };
         let w = (row.bound + s).max(BEGIN);
@@ -274,7 +272,7 @@ impl State {
         self.lambda * self.w + self.violation(row)
     }
 
-    /// Compliance of a row: change of its value per multiplier.
+    /// Change of the value of a row per change of its multiplier.
     fn compliance(&self, row: &Row) -> f64 {
         let soft = if row.is_soft() { self.s / self.mu(row) } else { 0.0 };
         soft + self.w / self.lambda
@@ -300,7 +298,7 @@ mod tests {
     /// The other solver stops at 1e-6 of the objective.
     const AGREEMENT: f64 = 1e-5;
 
-    /// The same numbers in each run, between −1 and 1.
+    /// Pseudo-random numbers between −1 and 1 from a fixed seed.
     struct Numbers(u64);
 
     impl Numbers {
@@ -329,7 +327,7 @@ mod tests {
                 let first = k / 3;
                 let terms = (first..size.min(first + WIDTH)).map(|i| (i, numbers.next())).collect();
                 let soft = k % 2 == 0;
-                // Kept rows leave x = 0 some room, others are broken there now and then.
+                // x = 0 satisfies the hard rows; it violates some of the soft rows.
                 let bound = if soft { numbers.next() } else { 0.1 + numbers.next().abs() };
                 Row { terms, bound, price: if soft { 0.7 } else { f64::INFINITY } }
             })

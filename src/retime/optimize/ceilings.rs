@@ -1,4 +1,4 @@
-//! Speed ceilings of a stream: no faster than the movements that it stands for.
+//! Speed ceilings of a stream: at most the speeds of the movements that it replaces.
 
 use super::allowed::{Loads, list, raise, steps};
 use super::freedom::{Bound, Freedom};
@@ -8,28 +8,28 @@ use crate::retime::motion::timeline::{MoveRecord, Run};
 use crate::retime::path::Leg;
 use crate::retime::path::joint_path::{DOF, Joints};
 
-/// Least speed ceiling of a joint, rad/s (0.06 degrees/s): the ceiling of a joint that hardly moves in
-/// the program must leave room for rounding.
+/// Smallest speed ceiling of a joint, rad/s (0.06 degrees/s): a joint that hardly moves in the
+/// program needs room for rounding.
 const LEAST_SPEED: f64 = 1e-3;
 
-/// Largest loads and speeds of the stream of a run.
+/// Largest loads and speeds of a stream that replaces a run.
 #[derive(Clone, Debug)]
 pub(super) struct Ceilings {
     /// Joint loads.
     pub(super) loads: Loads,
-    /// Speeds along the part that stands for each movement.
+    /// Speed ceilings of the part of the stream that replaces each movement.
     pub(super) moves: Vec<Ceiling>,
 }
 
 /// Largest speeds along one movement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ceiling {
-    /// Of the TCP, m/s.
+    /// TCP speed, m/s.
     pub tcp: f64,
-    /// The same within the corner zones at its ends, where the controller changes from the speed of
-    /// one movement to that of the next.
+    /// TCP speed within the corner zones at its ends, where the controller changes to the speed of
+    /// the next movement, m/s.
     pub corner: f64,
-    /// Of the joints, rad/s.
+    /// Joint speeds, rad/s.
     pub joints: Joints,
 }
 
@@ -49,7 +49,7 @@ impl Ceiling {
 }
 
 impl Ceilings {
-    /// No faster than the movements of the run, unless that is free.
+    /// Speeds of the movements of the run, or the robot limits where `freedom` permits it.
     pub(super) fn new(model: &Model, run: &Run, freedom: &Freedom) -> Ceilings {
         let velocity = speeds(model);
         let fastest = model.limits.tcp_speed.unwrap_or(f64::INFINITY);
@@ -73,7 +73,7 @@ impl Ceilings {
     }
 }
 
-/// The largest speeds of a movement as the controller executes it.
+/// The largest speeds of a movement in the simulated run.
 fn reached(model: &Model, run: &Run, record: &MoveRecord, leg: &Leg) -> Ceiling {
     let mut most = Ceiling { tcp: 0.0, corner: 0.0, joints: [0.0; DOF] };
     let (count, step) = steps(record.duration);

@@ -1,4 +1,4 @@
-//! Check of the realised motion of a stream against every limit.
+//! Check of the realised motion of a stream against all limits.
 
 use super::allowed::Loads;
 use super::ceilings::{Ceiling, speeds};
@@ -16,33 +16,33 @@ use crate::retime::path::joint_path::{DOF, Joints};
 /// Longest step between two samples, s.
 const STEP: f64 = 0.002;
 
-/// Shares of the limits that a stream uses, and its distance from the path.
+/// Used shares of the limits and deviation from the path.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Check {
-    /// Of the joint speeds.
+    /// Share of the joint speed limits.
     pub velocity: f64,
-    /// Of the joint accelerations.
+    /// Share of the joint acceleration limits.
     pub acceleration: f64,
-    /// Of the joint jerks.
+    /// Share of the joint jerk limits.
     pub jerk: f64,
-    /// Of the joint torques.
+    /// Share of the joint torque limits.
     pub torque: f64,
-    /// Of the TCP speed, programmed and the robot's.
+    /// Share of the TCP speed: of the programmed one and of the limit of the robot.
     pub tcp_speed: f64,
-    /// Largest distance from the programmed path, m, the turn of the tool at 0.1 m/rad included.
+    /// Largest distance from the programmed path, m, with the tool rotation at 0.1 m/rad.
     pub deviation_m: f64,
-    /// The same in units of what is allowed at each place.
+    /// Largest ratio of this distance to its tolerance.
     pub deviation: f64,
-    /// Largest distance of the polygon of the points from the programmed path, m: the path of a robot
-    /// that stops at each of them.
+    /// Largest distance of the polygon through the points from the programmed path, m. A robot
+    /// that stops at each point follows this polygon.
     pub polygon_m: f64,
-    /// The same in units of what is allowed at each place.
+    /// Largest ratio of this distance to its tolerance.
     pub polygon: f64,
-    /// Distance of the end from the programmed one, rad; 0 outside of a corridor.
+    /// Error of the end position, rad; 0 outside a corridor.
     pub endpoint_error_rad: f64,
-    /// True if every joint stays in its range.
+    /// True if all joint angles are within their ranges.
     pub in_range: bool,
-    /// Depth to which arm and tool enter the keep-out zones, m; only where the path may be left.
+    /// Depth of arm and tool in the keep-out zones, m; 0 if the path must be kept.
     pub intrusion_m: f64,
 }
 
@@ -54,12 +54,12 @@ impl Check {
             .fold(self.deviation, f64::max)
     }
 
-    /// True if nothing is exceeded.
+    /// True if no limit is exceeded.
     pub fn holds(&self) -> bool {
         self.worst() <= 1.0 && self.in_range && self.intrusion_m <= 0.0
     }
 
-    /// The limit that is exceeded most, in words; for a check that does not hold.
+    /// The most exceeded limit in words, for a check that does not hold.
     pub fn fault(&self) -> String {
         let figures = [
             ("joint speed", self.velocity),
@@ -99,7 +99,7 @@ impl Check {
         }
     }
 
-    /// Nothing checked yet.
+    /// The neutral element of [`Check::max`].
     pub fn none() -> Check {
         Check { in_range: true, ..Check::default() }
     }
@@ -108,14 +108,14 @@ impl Check {
 /// The space in which a stream may move.
 #[derive(Clone, Copy)]
 pub enum Room<'a> {
-    /// In the corridor of the movements that it stands for.
+    /// In the corridor of the movements that it replaces.
     Corridor(&'a Corridor),
     /// Anywhere, with at most these joint loads.
     Free(&'a Loads),
 }
 
-/// Checks the realised motion of a stream against every limit, in its room; `body` is the arm among
-/// the keep-out zones of the cell.
+/// Checks the realised motion of a stream against all limits; `body` is the arm with the
+/// keep-out zones of the cell.
 pub fn check(
     model: &Model,
     load: &Load,
@@ -186,14 +186,14 @@ pub fn check(
     result
 }
 
-/// Steps on the way from one point to the next.
+/// Steps per edge of the polygon.
 const EDGE_STEPS: usize = 16;
 
-/// Time beside a reversal of a joint, s: dry friction jumps at the reversal.
+/// Offset of samples from a reversal of a joint, s: Coulomb friction jumps at the reversal.
 const BESIDE: f64 = 1e-6;
 
-/// Sample times in a piece, s, rising: at most a step apart, and on both sides of each reversal of a
-/// joint.
+/// Rising sample times in a piece, s: at most a step apart, and on both sides of each reversal
+/// of a joint.
 fn samples(piece: &Piece) -> Vec<f64> {
     let steps = (piece.length / STEP).ceil().max(1.0) as usize;
     let turns = (0..DOF).map(|j| -piece.qd[j] / piece.qdd[j]);

@@ -1,5 +1,4 @@
-//! Convex programs with linear and second-order cone constraints: the only file of the optimiser
-//! that names the solver.
+//! Convex programs with linear and second-order cones; the only file that names the solver.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
@@ -11,10 +10,10 @@ use clarabel::solver::{
 const GAP: f64 = 1e-6;
 /// Relative residuals at which the solver stops.
 const RESIDUAL: f64 = 1e-7;
-/// Residuals at which the linear solves inside the solver stop; its own 1e-13 costs an eighth of
-/// the time and changes no answer.
+/// Residuals at which the linear solves inside the solver stop. The default 1e-13 costs an eighth
+/// of the time without an effect on the results.
 const REFINEMENT: f64 = 1e-10;
-/// Iterations before the solver gives up; usual are 10 to 30.
+/// Largest number of iterations; 10 to 30 are usual.
 const MAX_ITERATIONS: u32 = 100;
 
 /// Σ coefficient · x[index] + constant.
@@ -29,7 +28,7 @@ impl Affine {
         Affine { terms: Vec::new(), constant }
     }
 
-    /// Adds coefficient · x[variable]; nothing for a variable that was eliminated at 0.
+    /// Adds coefficient · x[variable]; `None` is a variable that was eliminated at 0.
     pub(super) fn add(&mut self, variable: Option<usize>, coefficient: f64) -> &mut Affine {
         if let Some(index) = variable.filter(|_| coefficient != 0.0) {
             self.terms.push((index, coefficient));
@@ -37,13 +36,13 @@ impl Affine {
         self
     }
 
-    /// With one more term.
+    /// self + coefficient · x[variable].
     pub(super) fn plus(mut self, variable: Option<usize>, coefficient: f64) -> Affine {
         self.add(variable, coefficient);
         self
     }
 
-    /// Whether no variable is in it.
+    /// Whether it contains no variable.
     pub(super) fn is_constant(&self) -> bool {
         self.terms.is_empty()
     }
@@ -79,7 +78,7 @@ pub(super) enum ConeStatus {
     AlmostSolved,
     /// No point satisfies the constraints.
     Infeasible,
-    /// The solver broke off.
+    /// The solver stopped without a result.
     Failed,
 }
 

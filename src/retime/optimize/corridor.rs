@@ -1,4 +1,4 @@
-//! Where a realised motion may be and how fast: the programmed path with its tolerances.
+//! The programmed path with tolerances and speed ceilings for a realised motion.
 
 use nalgebra::{Isometry3, Vector4};
 
@@ -13,34 +13,34 @@ use crate::retime::path::joint_path::{DOF, Joints};
 
 /// Distance of the samples of the path, m.
 const SPACING: f64 = 0.002;
-/// A turn of the tool counts as this much distance, m/rad.
+/// Weight of a rotation of the tool in distances, m/rad.
 const METRES_PER_RADIAN: f64 = 0.1;
 /// Allowed distance from a line or arc, m.
 pub const LINE_TOLERANCE: f64 = 0.001;
 /// Allowed distance from a joint movement, m.
 pub const JOINT_TOLERANCE: f64 = 0.005;
-/// Allowed distance in a corner zone, in units of its size.
+/// Allowed distance in a corner zone, as a share of its size.
 pub const ZONE_TOLERANCE: f64 = 0.1;
-/// Allowed distance of the polygon near stops, m: grippers and fixtures are near there.
+/// Allowed distance of the polygon near stop points, m: grippers and fixtures are close there.
 pub(super) const STOP_TOLERANCE: f64 = 0.0005;
-/// How far from a stop the path counts as near it, m: 50 mm, and what lies between places.
+/// Distance from a stop point within which this holds, m: 50 mm and a reserve for the sampling.
 const NEAR_STOP: f64 = 0.05 + 3.0 * SPACING;
-/// Growth of the polygon's tolerance beyond that, m/m: a motion cannot follow a step.
+/// Growth of the polygon tolerance beyond that, m/m: a motion cannot follow a step.
 const WIDENING: f64 = 0.05;
-/// How many samples ahead and behind the last place are searched for the nearest.
+/// Number of samples behind and ahead of the last place in which the nearest one is searched.
 const WINDOW: (usize, usize) = (8, 24);
 
 /// One sample of the programmed path.
 #[derive(Clone, Copy, Debug)]
 struct Place {
     pose: Isometry3<f64>,
-    /// Largest speeds here.
+    /// Largest speeds at this sample.
     ceiling: Ceiling,
-    /// Largest distance from here, m.
+    /// Largest distance from this sample, m.
     tolerance: f64,
-    /// The same for the polygon of the points.
+    /// Largest distance of the polygon through the points, m.
     polygon: f64,
-    /// The same if it is near a stop.
+    /// The same near a stop point, m.
     stop_tolerance: f64,
 }
 
@@ -48,20 +48,20 @@ struct Place {
 #[derive(Clone, Debug)]
 pub struct Corridor {
     places: Vec<Place>,
-    /// Largest loads and speeds of a stream in it.
+    /// Largest loads and speeds of a stream in the corridor.
     pub(super) ceilings: Ceilings,
-    /// Where the run ends, rad.
+    /// Joint angles at the end of the run, rad.
     pub(super) end: Joints,
 }
 
 /// Position of a pose relative to the corridor.
 #[derive(Clone, Copy, Debug)]
 pub struct Offset {
-    /// Distance of the TCP, m, the turn of the tool included.
+    /// Distance of the TCP, m, including the rotation of the tool.
     pub distance: f64,
     /// Allowed distance, m.
     pub tolerance: f64,
-    /// Allowed distance of the points' polygon, m.
+    /// Allowed distance of the polygon through the points, m.
     pub polygon: f64,
     /// Largest speeds.
     pub ceiling: Ceiling,
@@ -87,7 +87,7 @@ impl Corridor {
             let movement = &run.moves[piece.leg].movement;
             let zone = &run.legs[piece.leg].zone;
             let before = piece.leg.checked_sub(1).map(|leg| &run.legs[leg].zone);
-            // A piece of a zone belongs to the leg before or after its corner: so does its ceiling.
+            // A piece of a zone takes the ceiling of the leg before or after its corner.
             let ceiling = ceilings.moves[piece.leg];
             let tolerance = match piece.kind {
                 PieceKind::Joint => JOINT_TOLERANCE,
@@ -98,7 +98,7 @@ impl Corridor {
                     LINE_TOLERANCE.max(ZONE_TOLERANCE * size)
                 }
             };
-            // A corner is free where both of its movements are.
+            // The path is free in a corner if it is free in both movements.
             let corner = match piece.kind {
                 PieceKind::CartesianZone | PieceKind::JointZone => {
                     let after = path.leg_end(piece.leg) > piece.s + piece.length + 1e-9;
@@ -111,7 +111,7 @@ impl Corridor {
             let free = movements
                 .map(|movement| freedom.free_deviation(movement))
                 .fold(f64::INFINITY, f64::min);
-            // In a corner the joints change from one speed to the other.
+            // In a corner the joint speeds change from one movement to the next.
             let beyond = corner.and_then(|leg| ceilings.moves.get(leg)).unwrap_or(&ceiling);
             let tcp = if corner.is_some() { ceiling.corner } else { ceiling.tcp };
             let ceiling = Ceiling { tcp, joints: ceiling.max(beyond).joints, ..ceiling };
@@ -119,7 +119,7 @@ impl Corridor {
             let stop_tolerance = STOP_TOLERANCE.max(free);
             let extent = path.extent(piece.leg);
             let share = extent.length.max(METRES_PER_RADIAN * extent.angle) / extent.extent;
-            // A turn of the tool by more than half a turn looks shorter from its ends.
+            // For a rotation by more than π the angle between the end orientations is too small.
             let ends = [piece.s, piece.s + piece.length].map(|s| piece.eval(s).q);
             let turned = (0..DOF).map(|j| (ends[1][j] - ends[0][j]).abs()).fold(0.0, f64::max);
             let way = (piece.length * share).max(METRES_PER_RADIAN * turned);
@@ -128,7 +128,7 @@ impl Corridor {
                 .map(|i| piece.s + piece.length * i as f64 / n as f64)
                 .map(|s| extent.tool.pose(&fk(model, &piece.eval(s).q)))
                 .collect();
-            // Without its zone the original reaches the corner itself: the polygon may, too.
+            // Without the zone the original passes the corner point: the polygon may do so too.
             let cut = corner.and_then(|other| run.legs.get(other.min(piece.leg))).map(|leg| {
                 let corner = extent.tool.pose(&fk(model, &leg.end)).translation.vector;
                 let distance = |pose: &Isometry3<f64>| (pose.translation.vector - corner).norm();
@@ -142,7 +142,7 @@ impl Corridor {
         Some(Corridor { places, ceilings, end: run.end })
     }
 
-    /// The offset of a pose, searched near the place `from`, which is moved on.
+    /// The offset of a pose. The nearest place is searched near `from`, which is set to it.
     pub fn offset(&self, pose: &Isometry3<f64>, from: &mut usize) -> Offset {
         let begin = from.saturating_sub(WINDOW.0);
         let end = (*from + WINDOW.1).min(self.places.len() - 1);
@@ -155,7 +155,7 @@ impl Corridor {
         }
         *from = best.1;
         let place = &self.places[best.1];
-        // Where two stretches meet, the larger tolerance holds.
+        // At the boundary of two stretches the larger tolerance holds.
         let lo = &self.places[best.1.saturating_sub(1)];
         let hi = &self.places[(best.1 + 1).min(self.places.len() - 1)];
         Offset {
@@ -166,8 +166,8 @@ impl Corridor {
         }
     }
 
-    /// The TCP speed ceilings of all places without steps: each lower ceiling is extended by `reach` (m)
-    /// to both sides and rises from there with the `acceleration` (m/s²).
+    /// TCP speed ceilings of all places, smoothed: each lower ceiling is extended by `reach` (m)
+    /// to both sides and rises beyond with `acceleration` (m/s²).
     pub fn eased(&self, reach: f64, acceleration: f64) -> Vec<f64> {
         let last = self.places.len() - 1;
         let n = (reach / SPACING).ceil() as usize;
@@ -196,12 +196,12 @@ impl Corridor {
         &self.places[place].ceiling
     }
 
-    /// The distance of a pose over what is allowed there, and the value there of something given
-    /// at each place. The place is searched near `from`, which is moved on.
+    /// The distance of a pose relative to its tolerance, and `values` interpolated at the pose. The
+    /// place is searched near `from`, which is set to it.
     pub fn locate(&self, pose: &Isometry3<f64>, values: &[f64], from: &mut usize) -> (f64, f64) {
         let i = self.nearest(pose, from);
         let distance = self.distance(pose, i) / self.places[i].tolerance;
-        // Between the nearest place and its neighbour on the side of the pose.
+        // Interpolation between the nearest place and its neighbour on the side of the pose.
         let here = self.places[i].pose.translation.vector;
         let offset = pose.translation.vector - here;
         for k in [i + 1, i.wrapping_sub(1)] {
@@ -217,14 +217,13 @@ impl Corridor {
         (distance, values[i])
     }
 
-    /// The distance of a pose on the polygon of the points over what is allowed there, searched in
-    /// the same way.
+    /// The distance of a pose on the polygon relative to its tolerance, searched in the same way.
     pub(super) fn polygon_share(&self, pose: &Isometry3<f64>, from: &mut usize) -> f64 {
         let i = self.nearest(pose, from);
         self.distance(pose, i) / self.places[i].polygon
     }
 
-    /// The place nearest to a pose, searched near `from`, which becomes that place.
+    /// The place nearest to a pose. It is searched near `from`, which is set to it.
     fn nearest(&self, pose: &Isometry3<f64>, from: &mut usize) -> usize {
         const STRIDE: usize = 8;
         const AHEAD: usize = 32 * STRIDE;
@@ -243,7 +242,7 @@ impl Corridor {
         *from
     }
 
-    /// Distance of a pose from the stretch before and after a place.
+    /// Distance of a pose from the path stretches before and after a place, m.
     fn distance(&self, pose: &Isometry3<f64>, i: usize) -> f64 {
         let place = &self.places[i].pose;
         let from = pose.translation.vector - place.translation.vector;
@@ -264,19 +263,19 @@ impl Corridor {
     }
 }
 
-/// From one orientation to another: as long as the angle between them, rad, where it is small.
+/// Difference of two orientations; for small angles its length is the angle, rad.
 fn turn_vector(from: &Vector4<f64>, to: &Vector4<f64>) -> Vector4<f64> {
     let sign = if from.dot(to) < 0.0 { -1.0 } else { 1.0 };
     2.0 * (sign * to - from)
 }
 
-/// The angle between two orientations, rad, where it is small; a chord of it where it is large,
-/// which orders them the same without the cost of the arc.
+/// Angle between two orientations, rad; for large angles its chord, which has the same order and
+/// needs no inverse trigonometric function.
 fn turn(a: &Vector4<f64>, b: &Vector4<f64>) -> f64 {
     (8.0 * (1.0 - a.dot(b).abs()).max(0.0)).sqrt()
 }
 
-/// Largest distance of the TCP from the axis of each joint along the run, m: weight of joint errors.
+/// Largest distance of the TCP from each joint axis along the run, m: the weights of joint errors.
 pub(super) fn levers(model: &Model, run: &Run) -> Joints {
     let mut lever = [MIN_LEVER; DOF];
     for leg in &run.legs {
@@ -290,5 +289,5 @@ pub(super) fn levers(model: &Model, run: &Run) -> Joints {
     lever
 }
 
-/// A joint whose axis passes the TCP still turns the tool, m/rad.
+/// Smallest lever, m: a joint whose axis passes through the TCP still turns the tool.
 const MIN_LEVER: f64 = 0.1;

@@ -1,4 +1,4 @@
-//! The cost that is minimised on a path: energy, or a substitute from the literature.
+//! The cost that is minimised on a path: energy or a substitute from the literature.
 
 use super::path_energy::{EnergyModel, Sharing};
 use crate::arm::robot::{self, Model};
@@ -7,21 +7,21 @@ use crate::retime::motion::stream::DOF;
 /// The cost of a timing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Cost {
-    /// What the robot takes from the grid: work, copper losses, braking energy that is not used.
+    /// Energy from the grid: work, copper losses, braking energy that is not reused.
     #[default]
     Electrical,
-    /// The same with all braking energy lost that no other joint uses.
+    /// The same, but braking energy that no other joint uses is lost.
     ElectricalWithoutRegeneration,
-    /// ∫ Σ τ q̇ dt, as if braking gave everything back: Paes et al. (2014), before equation 9.
+    /// ∫ Σ τ q̇ dt, with full recovery of braking energy: Paes et al. (2014), before equation 9.
     Mechanical,
-    /// ∫ Σ q̇² dt: Paes et al. (2014), what their cost is reduced to.
+    /// ∫ Σ q̇² dt: the simplified cost of Paes et al. (2014).
     Velocity,
     /// ∫ Σ τ² dt.
     Torque,
 }
 
 impl Cost {
-    /// The cost on a robot. Base power is left out: the time is spent anyway.
+    /// The energy model of the cost on a robot. No base power: it depends on time only.
     pub fn model(self, robot: &Model) -> EnergyModel {
         let motors = robot.motors.as_ref();
         let loss = std::array::from_fn(|j| motors.map_or(0.0, |m| m.loss_constant[j]));

@@ -1,46 +1,46 @@
-//! The time of a cycle, shared among its runs so that the whole takes least energy.
+//! Distribution of the cycle time among the runs for least total energy.
 //!
-//! Each run has a convex trade-off of energy over time; at the optimum one more second saves the
-//! same in each of them. A wait whose signal comes at a known time is used up by slower arrival.
-//! With piecewise linear trade-offs all of it is one linear program.
+//! Each run has a convex trade-off of energy over time; at the optimum the slopes of all runs are
+//! equal. Where a signal comes at a known time, a slower run before it replaces the wait. With
+//! piecewise linear trade-offs the whole is one linear program.
 
 use super::cone::{Affine, ConeProgram, ConeStatus};
 
-/// Energy of a run over its time: points of rising time (s) on a convex curve (J).
+/// Energy of a run over its duration: points (s, J) with rising time on a convex curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TradeOff {
     points: Vec<(f64, f64)>,
 }
 
-/// Energy of a run at one time.
+/// Energy of a run at one duration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Known {
     /// s.
     pub time: f64,
     /// J.
     pub energy: f64,
-    /// dE/dt: cost of one more second, W.
+    /// dE/dt, W.
     pub slope: f64,
 }
 
 impl Known {
-    /// Energy at another time, s, where what one more second costs falls with a power of the time.
+    /// Energy at another time (s), J, if the slope falls with a power of the time.
     fn law(&self, power: i32, time: f64) -> f64 {
         let fall = 1.0 - (self.time / time).powi(power - 1);
         self.energy + self.slope * self.time / f64::from(power - 1) * fall
     }
 }
 
-/// Points of a curve for each stretch of it.
+/// Curve points per interval between known times.
 const REFINEMENT: usize = 12;
-/// What one more second saves falls with this power of the time. Measured on the runs of
-/// `fixtures/pick_place`: 3.6 to 4.6 for longer times than before, 4 to 7.6 for shorter ones.
+/// Exponent with which the slope falls over time. Measured on the runs of `fixtures/pick_place`:
+/// 3.6 to 4.6 for longer times than the original, 4 to 7.6 for shorter ones.
 const LONGER: i32 = 4;
 const SHORTER: i32 = 6;
 
 impl TradeOff {
-    /// The curve from the shortest to the longest time (s) through some known ones, which rise.
-    /// `None` without any that are finite.
+    /// The curve from the shortest to the longest time (s) through known points of rising time.
+    /// `None` without a finite point.
     pub fn through(known: &[Known], (shortest, longest): (f64, f64)) -> Option<TradeOff> {
         let (first, last) = (*known.first()?, *known.last()?);
         let between = |from: f64, to: f64, energy: &dyn Fn(f64) -> f64| -> Vec<(f64, f64)> {
@@ -55,7 +55,7 @@ impl TradeOff {
         TradeOff::new(quicker.into_iter().chain(inside).chain(slower).collect())
     }
 
-    /// The lower convex hull of some points; `None` without any.
+    /// The lower convex hull of points (s, J); `None` without a finite point.
     pub fn new(mut points: Vec<(f64, f64)>) -> Option<TradeOff> {
         points.retain(|(t, e)| t.is_finite() && e.is_finite());
         points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
@@ -77,7 +77,7 @@ impl TradeOff {
         (self.points[0].0, self.points[self.points.len() - 1].0)
     }
 
-    /// The lines of which the curve is the maximum: slope (W) and energy at time 0 (J).
+    /// The curve as a maximum of lines: slope (W) and energy at time 0 (J) of each.
     fn lines(&self) -> Vec<(f64, f64)> {
         match self.points.as_slice() {
             [(_, energy)] => vec![(0.0, *energy)],
@@ -90,7 +90,7 @@ impl TradeOff {
     }
 }
 
-/// Between two known times.
+/// Cubic Hermite interpolation between two known points, J.
 fn hermite(a: Known, b: Known, time: f64) -> f64 {
     let h = b.time - a.time;
     let x = (time - a.time) / h;
@@ -113,35 +113,35 @@ pub enum Part {
     Fixed(f64),
     /// A wait for a signal.
     Arrival {
-        /// The part after whose end the delay counts; `None` for the start of the cycle.
+        /// The delay starts at the end of this part; `None`: at the start of the cycle.
         since: Option<usize>,
         /// s.
         delay: f64,
-        /// Least time of the wait, s: a reserve for runs that come out late.
+        /// Smallest duration of the wait, s: a reserve for late runs.
         least: f64,
-        /// Power of standing there, W.
+        /// Power at standstill, W.
         holding_w: f64,
     },
 }
 
-/// Unit of energy of the program, J.
+/// Energy unit of the linear program, J.
 const UNIT: f64 = 10.0;
-/// Share of the takt that rounding may take.
+/// Rounding tolerance as a share of the takt.
 const ROUNDING: f64 = 1e-9;
 
-/// A cycle whose time is shared.
+/// A cycle of runs, fixed times and waits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cycle {
     /// The parts in order.
     pub parts: Vec<Part>,
-    /// Longest time that it may take, s.
+    /// Longest duration of the cycle, s.
     pub takt: f64,
-    /// Power of standing for the rest of the takt, W.
+    /// Power at standstill for the rest of the takt, W.
     pub resting_w: f64,
 }
 
 impl Cycle {
-    /// The time of each run, s, with least energy in all. `None` if the takt is not possible.
+    /// The duration of each run (s) for least total energy. `None` if the takt is too short.
     pub fn share(&self, curves: &[TradeOff]) -> Option<Vec<f64>> {
         let arrivals =
             self.parts.iter().filter(|part| matches!(part, Part::Arrival { .. })).count();
@@ -164,7 +164,7 @@ impl Cycle {
                 Part::Arrival { since, delay, least, holding_w } => {
                     let from = since.map_or(Affine::constant(0.0), |part| ends[part].clone());
                     let late = from.shift(*delay).sum(&now.clone().times(-1.0));
-                    // wait ≥ what is left of the delay, wait ≥ the least
+                    // wait ≥ rest of the delay, wait ≥ least
                     program.at_most_zero(late.plus(wait(arrival), -1.0));
                     program.at_most_zero(Affine::constant(*least).plus(wait(arrival), -1.0));
                     let holding = Affine::constant(0.0).plus(wait(arrival), holding_w / UNIT);
@@ -199,7 +199,7 @@ impl Cycle {
         }
     }
 
-    /// Its time, s, without the rest of the takt, where its runs take `times` (s).
+    /// Duration of the cycle without the rest of the takt, s, if its runs take `times` (s).
     pub fn time(&self, times: &[f64]) -> f64 {
         let now = |ends: &[f64]| ends.last().copied().unwrap_or(0.0);
         let mut ends: Vec<f64> = Vec::with_capacity(self.parts.len());
@@ -209,8 +209,8 @@ impl Cycle {
         now(&ends)
     }
 
-    /// The energy of its runs, J, and of standing where signals and the takt are waited for, where
-    /// its runs take `times` (s) and `energies` (J).
+    /// Energy of the runs and of all standstills up to the takt, J, if the runs take `times` (s)
+    /// and `energies` (J).
     pub fn energy(&self, times: &[f64], energies: &[f64]) -> f64 {
         let mut ends: Vec<f64> = Vec::with_capacity(self.parts.len());
         let mut energy = 0.0;
@@ -227,7 +227,7 @@ impl Cycle {
     }
 }
 
-/// How long a part takes, s, where those before it end at `ends` (s).
+/// Duration of a part, s, if the parts before it end at `ends` (s).
 fn part_time(part: &Part, times: &[f64], ends: &[f64]) -> f64 {
     match part {
         Part::Run(run) => times[*run],
@@ -245,14 +245,14 @@ mod tests {
 
     const TOLERANCE: f64 = 1e-3;
 
-    /// Points of the bowl are so far apart, s.
+    /// Spacing of the points of the parabola, s, with a reserve.
     const BOWL: f64 = 0.11;
 
     fn cycle(parts: &[Part], takt: f64) -> Cycle {
         Cycle { parts: parts.to_vec(), takt, resting_w: 0.0 }
     }
 
-    /// a / t: quick ones cost more.
+    /// a / t: short durations cost more.
     fn curve(a: f64) -> TradeOff {
         let times = (0..=400).map(|i| 1.0 + 0.01 * f64::from(i));
         TradeOff::new(times.map(|t| (t, a / t)).collect()).expect("points")
@@ -263,14 +263,14 @@ mod tests {
         let curves = [curve(100.0), curve(400.0)];
         let cycle = cycle(&[Part::Run(0), Part::Fixed(2.0), Part::Run(1)], 8.0);
         let times = cycle.share(&curves).expect("possible");
-        // a / t² is the same for both: t goes with √a.
+        // a / t² is equal for both, so t is proportional to √a.
         assert!((times[0] - 2.0).abs() < 0.02 && (times[1] - 4.0).abs() < 0.02, "{times:?}");
         assert!((cycle.time(&times) - 8.0).abs() < TOLERANCE);
     }
 
     #[test]
     fn a_few_known_times_make_a_close_curve() {
-        // What one more second saves falls with the fourth power of the time.
+        // The slope falls with the fourth power of the time.
         let energy = |t: f64| 90.0 / t.powi(3);
         let known = |t: f64| Known { time: t, energy: energy(t), slope: -270.0 / t.powi(4) };
         let worst = |times: &[f64]| {
@@ -280,10 +280,10 @@ mod tests {
             let errors = curve.points.iter().map(|(t, e)| (e - energy(*t)).abs() / energy(*t));
             errors.fold(0.0, f64::max)
         };
-        // What lies before the first one rises more steeply than it does here.
+        // Before the first point the assumed exponent is larger than this one.
         assert!(worst(&[1.0, 1.4, 2.0]) < 0.05, "{}", worst(&[1.0, 1.4, 2.0]));
         assert!(worst(&[0.9, 1.0, 1.2, 1.4, 1.7, 2.0]) < 2e-3);
-        // One is enough where the law holds.
+        // One point is enough if the exponent is right.
         assert!(worst(&[0.9]) < 1e-9);
     }
 
@@ -298,10 +298,10 @@ mod tests {
             "{times:?}"
         );
         assert!((waiting.time(&times) - 4.5).abs() < TOLERANCE);
-        // Quicker runs wait for the signal: two seconds at 1 W.
+        // Faster runs wait for the signal: two seconds at 1 W.
         let energy = waiting.energy(&[1.0, 1.0], &[7.0, 5.0]);
         assert!((energy - (7.0 + 5.0 + 2.0)).abs() < TOLERANCE, "{energy}");
-        // The second signal counts from the first one: only the way between has to wait for it.
+        // The second signal is timed from the first one, so only the second run must wait for it.
         let again = Part::Arrival { since: Some(1), delay: 2.5, least: 0.0, holding_w: 1.0 };
         let twice = cycle(&[Part::Run(0), wait, Part::Run(1), again], 5.5);
         let times = twice.share(&curves).expect("possible");
@@ -324,14 +324,14 @@ mod tests {
     fn the_rest_of_the_takt_is_paid_for() {
         let parts = [Part::Run(0)];
         let free = Cycle { resting_w: 0.0, ..cycle(&parts, 4.0) };
-        // Beyond 2 s the run takes more power by being slower than it saves.
+        // Beyond 2 s a slower run needs more energy.
         let bowl = TradeOff::new(
             (10..=50).map(f64::from).map(|t| (t / 10.0, (t / 10.0 - 2.0).powi(2))).collect(),
         );
         let bowl = [bowl.expect("points")];
         let times = free.share(&bowl).expect("possible");
         assert!((times[0] - 2.0).abs() < BOWL, "{times:?}");
-        // Standing takes 2 W: the run uses a second more, where it takes as much.
+        // Standstill takes 2 W, so the run is slowed to the time at which its slope is 2 W.
         let paid = Cycle { resting_w: 2.0, ..free };
         let times = paid.share(&bowl).expect("possible");
         assert!((times[0] - 3.0).abs() < BOWL, "{times:?}");

@@ -1,4 +1,4 @@
-//! The cone programs for the speed profile of least energy on a fixed path.
+//! Cone programs for the speed profile of least energy on a fixed path.
 //!
 //! Variables at the nodes: b = ṡ² and c ≤ √b (c² ≤ b); on the intervals: d ≥ 1/(c₀ + c₁), which
 //! is the time over 2 Δs, and epigraphs. With τ = ℓ + δ √b, ℓ linear in (u, b) and δ the viscous
@@ -6,21 +6,20 @@
 //!
 //! ∫ k τ² dt = ∫ k ℓ²/√b ds + ∫ 2 k δ ℓ ds + ∫ k δ² √b ds:
 //!
-//! a rotated cone, a linear term and a concave one. Viscous work is ∫ Σ δ q' √b ds, concave too.
-//! All else is convex or a constant of the path (potential energy, Coulomb work): Verscheure,
+//! a rotated cone, a linear term and a concave one. Viscous work is ∫ Σ δ q' √b ds, also concave.
+//! All other terms are convex or constant (potential energy, Coulomb work): Verscheure,
 //! Demeulenaere, Swevers, De Schutter, Diehl, "Time-optimal path tracking for robots: a convex
 //! optimization approach" (2009). The concave terms w √b are treated in two ways:
 //!
-//! - √b ≤ its tangent at the profile before: the program is an inner approximation that is exact
-//!   there.
-//! - w √b ≥ w g with g d ≥ 1: as a function of the time per length the viscous work is convex.
-//!   This relaxation is exact wherever time is worth more than the friction that it saves. Where
-//!   it is not, √b ≥ its secant over the speeds that the time leaves.
+//! - √b ≤ its tangent at the previous profile: an inner approximation that is exact there.
+//! - w √b ≥ w g with g d ≥ 1: viscous work is convex in the time per length. This relaxation is
+//!   exact where time is worth more than the friction that it saves. Elsewhere √b ≥ its secant over
+//!   the speeds that the time permits.
 //!
-//! Path and time of the start are scaled to one. Limits are rows at both ends of each interval, in the
-//! relaxation in the middle (which a motion between the nodes keeps up to the second order); only
-//! rows near their bound are in a program, and it is solved again when others are violated. The rest
-//! at both ends is eliminated: there the cones would have no interior.
+//! Path length and start duration are scaled to one. Limits are rows at both interval ends, in the
+//! relaxation in its middle (second-order accurate for a motion between the nodes). A program
+//! contains only rows near their bound and is solved again if others are violated. The variables at
+//! the resting ends are eliminated, since the cones have no interior there.
 
 use super::cone::{Affine, ConeProgram, ConeSolution, ConeStatus};
 use super::energy_costs::{IntervalCost, Layout, Root, Scale, mean_root};
@@ -38,24 +37,24 @@ pub(super) struct Step {
     pub(super) energy: f64,
     /// Dual bound of the program, J.
     pub(super) bound: f64,
-    /// By how much the tangents overestimate the energy of this profile, J.
+    /// Overestimation of the energy of this profile by the tangents, J.
     pub(super) excess: f64,
-    /// Energy that one more second saves, W.
+    /// Energy saving per additional time, W.
     pub(super) marginal: f64,
 }
 
-/// Relative room that the programs keep to the time and to the limits, so that what the solver
-/// leaves open does not break them.
+/// Relative margin of the programs to time and limits, so that the residuals of the solver do not
+/// violate them.
 const MARGIN: f64 = 1e-5;
-/// Share of its limit from which a row is part of the first program.
+/// Share of its limit from which a row is in the first program.
 const NEAR_AT_FIRST: f64 = 0.6;
-/// Share of its limit from which a row is added when another one is violated.
+/// Share of its limit from which a row is added after a violation of another one.
 const NEAR: f64 = 0.85;
-/// Rounds in which rows are added.
+/// Largest number of solves with added rows.
 const MAX_ROUNDS: usize = 8;
-/// Smallest scaled speed at which a tangent is taken.
+/// Smallest scaled speed of a tangent.
 const SLOWEST: f64 = 1e-6;
-/// sign · row ≤ 1 at the share `at` of an interval.
+/// sign · row ≤ 1 at the position `at` (0…1) of an interval.
 struct Limit {
     interval: usize,
     at: f64,
@@ -64,7 +63,7 @@ struct Limit {
     active: bool,
 }
 
-/// The programs of one problem, with the rows that have become active.
+/// The programs of one problem with their active rows.
 pub(super) struct Programs<'a> {
     grid: &'a PathGrid,
     duration: f64,
@@ -73,9 +72,9 @@ pub(super) struct Programs<'a> {
     /// J per unit of the objective.
     unit: f64,
     costs: Vec<IntervalCost>,
-    /// Rows at the ends of the intervals, and in their middles for the relaxation.
+    /// Rows at the ends of the intervals; rows in their middles for the relaxation.
     limits: [Vec<Limit>; 2],
-    /// Largest scaled b at each node, and whether the row is in the program.
+    /// Largest scaled b at each node and whether this bound is active.
     b_max: Vec<(f64, bool)>,
     convex: bool,
     /// Scaled bounds on √b at the nodes, for the relaxation.
@@ -83,8 +82,8 @@ pub(super) struct Programs<'a> {
 }
 
 impl<'a> Programs<'a> {
-    /// The programs for profiles that take at most `duration` (s); `start` sets the scales and
-    /// chooses the first rows.
+    /// The programs for profiles of at most `duration` (s); `start` sets the scales and the first
+    /// active rows.
     pub(super) fn new(
         grid: &'a PathGrid,
         limits: &PathLimits,
@@ -119,14 +118,14 @@ impl<'a> Programs<'a> {
         programs
     }
 
-    /// With bounds on ṡ² at the nodes that every profile in the time keeps.
+    /// Adds bounds on ṡ² at the nodes that hold for every profile of the duration.
     pub(super) fn within(mut self, range: &[(f64, f64)]) -> Programs<'a> {
         let scaled = |b: f64| b.max(0.0).sqrt() / self.speed;
         self.roots = range.iter().map(|(lo, hi)| [scaled(*lo), scaled(*hi)]).collect();
         self
     }
 
-    /// The secant of √b at a node between its bounds: below √b.
+    /// The secant of √b at a node between its bounds, a lower bound of √b.
     fn secant(&self, layout: &Layout, node: usize) -> Affine {
         match self.roots.get(node) {
             Some([lo, hi]) if lo + hi > 0.0 => {
@@ -137,12 +136,12 @@ impl<'a> Programs<'a> {
         }
     }
 
-    /// Whether nothing is concave, so that one program with tangents is the problem.
+    /// Whether no term is concave, so that one program with tangents is exact.
     pub(super) fn is_convex(&self) -> bool {
         self.convex
     }
 
-    /// Solves the program, adding rows until none is violated. None if the solver fails.
+    /// Solves the program and adds rows until none is violated. None if the solver fails.
     pub(super) fn solve(&mut self, root: Root<'_>) -> Option<Step> {
         for _ in 0..MAX_ROUNDS {
             let layout = Layout::new(&self.costs, root);
@@ -196,7 +195,7 @@ impl<'a> Programs<'a> {
         self.costs.iter().enumerate().flat_map(of).sum()
     }
 
-    /// Whether the profile b violates a row that is not in the program.
+    /// Whether the profile b violates an inactive row.
     fn broken(&self, b: &[f64], root: Root<'_>) -> bool {
         let limit = |l: &Limit| !l.active && self.value(l, b) > 1.0;
         let speed = |(k, (max, active)): (usize, &(f64, bool))| {
@@ -205,7 +204,7 @@ impl<'a> Programs<'a> {
         self.limits[kind(root)].iter().any(limit) || self.b_max.iter().enumerate().any(speed)
     }
 
-    /// Brings in all rows that use more than the share `near` of their limit.
+    /// Activates all rows above the share `near` of their limit.
     fn activate(&mut self, b: &[f64], near: f64) {
         for kind in 0..self.limits.len() {
             for i in 0..self.limits[kind].len() {
@@ -225,7 +224,7 @@ impl<'a> Programs<'a> {
         limit.sign * limit.row.value(u, b[k] + limit.at * (b[k + 1] - b[k]))
     }
 
-    /// The program and the index of its time row.
+    /// The program and the index of its duration row.
     fn build(&self, layout: &Layout, root: Root<'_>) -> (ConeProgram, usize) {
         let n = self.grid.intervals();
         let mut program = ConeProgram::new(layout.variables());
@@ -286,7 +285,7 @@ impl<'a> Programs<'a> {
         let (weight, n) = (self.costs[k].viscous, self.grid.intervals());
         match root {
             Root::Relaxed => {
-                // g ≥ c₀ + c₁, of which the mean takes the share of either node.
+                // g ≥ c₀ + c₁; both nodes have the same share.
                 let [(_, share), _] = mean_root(k, n);
                 Affine::default().plus(layout.root(k), weight * share)
             }
@@ -303,14 +302,14 @@ impl<'a> Programs<'a> {
         }
     }
 
-    /// The tangent of √b at the b `at`.
+    /// The tangent of √b at b = `at`.
     fn tangent(&self, b: &Affine, at: f64) -> Affine {
         let speed = at.sqrt().max(SLOWEST * self.speed) / self.speed;
         b.clone().times(0.5 / speed).shift(0.5 * speed)
     }
 
-    /// The row of an active limit: friction that adds to the load by its upper approximation,
-    /// friction that relieves by c.
+    /// The row of an active limit. Friction that adds to the load takes the upper approximation of
+    /// √b, friction that reduces it takes c.
     fn limit_row(&self, layout: &Layout, root: Root<'_>, limit: &Limit) -> Affine {
         let (k, Row { u, b, root: viscous, constant }) = (limit.interval, limit.row);
         let square = self.speed * self.speed;
@@ -349,7 +348,7 @@ fn limits_at(grid: &PathGrid, limits: &PathLimits, shares: &[f64]) -> Vec<Limit>
     all
 }
 
-/// Index of the rows that a program of this kind keeps.
+/// Index in [`Programs::limits`] of the rows for this approximation.
 fn kind(root: Root<'_>) -> usize {
     match root {
         Root::Tangent(_) => 0,

@@ -1,4 +1,4 @@
-//! Costs and variables of the cone programs, interval by interval.
+//! Costs and variables of the cone programs per interval.
 
 use nalgebra::SMatrix;
 
@@ -7,29 +7,29 @@ use super::path_energy::{EnergyModel, Sharing};
 use crate::retime::motion::stream::DOF;
 use crate::retime::motion::timing::grid::PathGrid;
 
-/// What stands for √b where it is concave.
+/// Approximation of √b in concave terms.
 #[derive(Clone, Copy)]
 pub(super) enum Root<'a> {
     /// The convex lower bound.
     Relaxed,
-    /// The tangent at this b, which is above.
+    /// The tangent at this b, an upper bound.
     Tangent(&'a [f64]),
 }
 
-/// ∫ √b ds over an interval, per Δs √b at the moving end, where the other end rests.
+/// ∫ √b ds over an interval that starts or ends at rest, per Δs √b at its moving end.
 const MEAN_ROOT_FROM_REST: f64 = 2.0 / 3.0;
 
-/// The costs of one interval in units of the objective and of scaled variables.
+/// Costs of one interval in the units of the objective and of the scaled variables.
 pub(super) struct IntervalCost {
-    /// Vector whose square over c₀ + c₁ is the copper loss.
+    /// Vector v with copper loss ‖v‖² / (c₀ + c₁).
     pub(super) copper: Vec<Affine>,
     /// The part of the copper loss that is linear in (u, b).
     pub(super) cross: Affine,
     /// Factor w of the mean √b.
     pub(super) viscous: f64,
-    /// Works that count when they are negative, each with the factor of the mean √b.
+    /// Works of which the negative part is a cost, each with the factor of the mean √b.
     pub(super) brakes: Vec<(Affine, f64)>,
-    /// Time per d, over the given duration.
+    /// Time per d, relative to the given duration.
     pub(super) time: f64,
     /// Base energy per d.
     pub(super) base: f64,
@@ -56,7 +56,7 @@ impl IntervalCost {
         let square = scale.speed * scale.speed;
         let before = (k > 0).then(|| Layout::b_of(k));
         let after = (k + 1 < grid.intervals()).then(|| Layout::b_of(k + 1));
-        // ℓ, Nm: linear in b at both nodes; the factors of these and the rest.
+        // ℓ, Nm, linear in b at both nodes: the two factors and the constant.
         let factors = |j: usize| {
             let (u, b) = (middle.m[j] * 0.5 / delta, 0.5 * middle.c[j]);
             [(b - u) * square, (b + u) * square, middle.g[j] + middle.coulomb[j]]
@@ -76,7 +76,7 @@ impl IntervalCost {
                 cross = cross.sum(&linear(j).times(factor));
             }
         }
-        // All joints together depend on two variables: the same square in three terms.
+        // The losses of all joints depend on two variables: QR reduces them to three terms.
         let copper = if losses.iter().any(|x| *x != 0.0) {
             losses.qr().r().row_iter().map(|row| affine([row[0], row[1], row[2]])).collect()
         } else {
@@ -107,16 +107,16 @@ impl IntervalCost {
     }
 }
 
-/// Shares of √b at the nodes of interval k in the mean of √b over it.
+/// Weights of √b at the nodes of interval k in the mean of √b.
 pub(super) fn mean_root(k: usize, n: usize) -> [(usize, f64); 2] {
     let share = if k == 0 || k + 1 == n { MEAN_ROOT_FROM_REST } else { 0.5 };
     [(k, share), (k + 1, share)]
 }
 
-/// Where the variables are: b and c of the inner nodes, then the variables of each interval.
+/// Indices of the variables: b and c of the inner nodes, then the variables of each interval.
 pub(super) struct Layout {
     intervals: usize,
-    /// Index of the first variable of each interval, and the number of variables at the end.
+    /// Index of the first variable of each interval; last, the number of variables.
     first: Vec<usize>,
     copper: Vec<bool>,
     root: Vec<bool>,

@@ -1,4 +1,4 @@
-//! The curve of least energy over time of a run.
+//! Least energy of a run as a function of its time.
 
 use super::cycle::{Known, TradeOff};
 use super::energy_program::{EnergyBound, energy_bound, minimize_energy};
@@ -10,34 +10,33 @@ use crate::retime::motion::timing::grid::PathGrid;
 use crate::retime::motion::timing::limits::PathLimits;
 use crate::retime::motion::timing::profile::Profile;
 
-/// The curve begins at the least time times this, where programs have room.
+/// First time of the curve relative to the least time, so that the programs have an interior.
 const RESERVE_OF_CURVE: f64 = 1.001;
-/// And ends at this multiple of that, at least.
+/// Smallest ratio of the last time of the curve to the first.
 const CURVE: f64 = 2.0;
 
-/// A stream needs this much more time than the fastest profile, at least.
+/// Smallest ratio of the time of a stream to that of the fastest profile.
 const RESERVE: f64 = 1.05;
-/// Intervals of the grid of a curve besides those of zones: its slopes need no more.
+/// Grid intervals for a curve, in addition to those of zones; enough for its slopes.
 const COARSE: usize = 20;
-/// Share of a time within which a curve is known well enough.
+/// Relative distance of times within which no further point is computed.
 const NEAR: f64 = 0.03;
-/// Share by which a profile is lengthened for a finite difference of its energy.
+/// Relative time step of the finite difference of the energy.
 const LONGER: f64 = 1e-3;
 
 /// A point of the curve of energy over time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeEnergy {
-    /// Time of the run, settling included, s.
+    /// Duration of the run with settling, s.
     pub time_s: f64,
-    /// Energy of the run with the best timing of its path in this time, all six parts, J.
+    /// Least energy of the run on its path in this time, sum of all six parts, J.
     pub energy_j: f64,
-    /// No timing of the path takes less in this time, J.
+    /// Lower bound of the energy on the path in this time, J.
     pub lower_bound_j: f64,
 }
 
-/// `count` points of the curve of energy over time of a run, from the least time of its path to
-/// the longest that is asked for or a multiple of the least. Without a limit on the jerk: what a
-/// stream can be compared with. Empty where the path has no timing.
+/// `count` points of the curve of energy over time, from the least time of the path to that of
+/// the run or to a multiple of the least. The jerk is not limited. Empty if the path has no timing.
 pub fn pareto(task: &Task<'_>, count: usize) -> Vec<TimeEnergy> {
     let curve = || {
         let problem = RunProblem::new(task).ok()?;
@@ -67,26 +66,25 @@ pub fn pareto(task: &Task<'_>, count: usize) -> Vec<TimeEnergy> {
     curve().unwrap_or_default()
 }
 
-/// Least energy of the motion of a run over its time (settling included), computed at the times that
-/// are asked for.
+/// Least energy of the motion of a run over its time (with settling), computed at chosen times.
 pub struct Curve<'a> {
     problem: RunProblem<'a>,
     grid: PathGrid,
     limits: PathLimits,
     fast: Profile,
-    /// Of rising time, with ṡ² at the nodes.
+    /// Points of rising time, with ṡ² at the nodes.
     known: Vec<(Known, Vec<f64>)>,
     range: (f64, f64),
 }
 
 impl<'a> Curve<'a> {
-    /// The curve of a run from `shortest` (s, 0 where that is not known) to `longest`, known at
-    /// the time that the run takes now. `None` where there is no stream.
+    /// The curve of a run from `shortest` (s; 0 if unknown) to `longest`, with one point at the
+    /// current time of the run. `None` if no stream is possible.
     pub fn new(task: &'a Task<'a>, shortest: f64, longest: f64) -> Option<Curve<'a>> {
         let problem = RunProblem::new(task).ok()?;
         let (grid, limits) = problem.grid_of(&Margins::first(problem.tolerance()), COARSE).ok()?;
         let fast = fastest_profile(&grid, &limits).ok()?;
-        // The shortest possible time may be below that of the coarse grid.
+        // The shortest time may be below the least time on the coarse grid.
         let reserve = RESERVE * fast.duration() + task.run.settling;
         let shortest = if shortest > 0.0 { shortest } else { reserve };
         let range = (shortest, longest.max(shortest));
@@ -94,8 +92,7 @@ impl<'a> Curve<'a> {
         curve.learn(task.run.duration()).then_some(curve)
     }
 
-    /// Computes the energy of the run in a time, s, unless it is known near that time. Returns
-    /// whether a point was added.
+    /// Computes the energy at a time (s) unless a point is near. Returns whether one was added.
     pub fn learn(&mut self, time: f64) -> bool {
         let least = RESERVE * self.fast.duration() + self.problem.task.run.settling;
         let time = time.clamp(self.range.0, self.range.1).max(least);
@@ -112,12 +109,12 @@ impl<'a> Curve<'a> {
         is_new
     }
 
-    /// The point of the curve at a time, s; for a time beyond that of least energy, both points.
+    /// The point at a time, s; beyond the time of least energy also the point of least energy.
     fn at(&self, time: f64) -> Vec<(Known, Vec<f64>)> {
         let settling = self.problem.task.run.settling;
         let moving = time - settling;
         let (grid, model) = (&self.grid, &self.problem.electrical);
-        // The speeds at another time are a good guess of those at this one.
+        // Start from the scaled speeds of the nearest point.
         let far = |(known, _): &&(Known, Vec<f64>)| (known.time / time).ln().abs();
         let nearest = self.known.iter().min_by(|a, b| far(a).total_cmp(&far(b)));
         let guess = nearest.map(|(known, b)| {
@@ -133,7 +130,7 @@ impl<'a> Curve<'a> {
         if optimum.marginal > 0.0 {
             return vec![(Known { time, energy: least, slope: -optimum.marginal }, b)];
         }
-        // The motors hold the arm up for longer: more time costs energy then.
+        // Beyond the optimum more time costs holding energy.
         let energy = |duration: f64| {
             let slow = optimum.profile.scaled_to(duration)?;
             Some(evaluate(grid, &slow, model).total())
@@ -150,7 +147,7 @@ impl<'a> Curve<'a> {
         found
     }
 
-    /// The curve through the points so far.
+    /// The curve through the computed points.
     pub fn trade_off(&self) -> Option<TradeOff> {
         let known: Vec<Known> = self.known.iter().map(|(known, _)| *known).collect();
         TradeOff::through(&known, self.range)

@@ -1,8 +1,8 @@
 //! The speed profile of least energy on a fixed path in a given time.
 //!
-//! A relaxation gives a lower bound and a first profile; programs with tangents of the concave
-//! viscous terms then lower the energy step by step (difference of convex functions). A solver's
-//! answer counts only after the profile itself has been verified and evaluated.
+//! A relaxation gives a lower bound and a first profile. Programs with tangents of the concave
+//! viscous terms then lower the energy in steps (difference of convex functions). A solution is
+//! accepted only after its profile has been checked and evaluated.
 
 use super::energy_cones::{Programs, Step};
 use super::energy_costs::Root;
@@ -20,22 +20,22 @@ pub struct EnergyOptimum {
     pub profile: Profile,
     /// Its energies.
     pub energy: EnergyParts,
-    /// A bound, J, below which no profile on this grid gets in this time.
+    /// Lower bound of the energy of profiles on this grid in this time, J.
     pub lower_bound: f64,
-    /// Energy that one more second saves at the margin, W; without the base power.
+    /// Energy saving per additional time, W; without base power.
     pub marginal: f64,
 }
 
-/// How the search for the profile of least energy ended.
+/// Outcome of the search for the profile of least energy.
 #[derive(Clone, Debug, PartialEq)]
 pub enum EnergyOutcome {
     /// The programs converged.
     Converged(EnergyOptimum),
-    /// A solve failed or the iteration stopped early: the best verified profile.
+    /// A solve failed or the iterations ended: the best verified profile.
     Improved(EnergyOptimum),
-    /// No program gave a better verified profile than the start, which is returned.
+    /// No program gave a better verified profile than the start: the start.
     Kept(EnergyOptimum),
-    /// The time is below that of the fastest profile, s.
+    /// The time is below that of the fastest profile.
     TooShort {
         /// The time of the fastest profile, s.
         fastest: f64,
@@ -54,33 +54,33 @@ impl EnergyOutcome {
     }
 }
 
-/// Accepted share of a limit or of the time beyond 1.
+/// Accepted relative excess of a limit or of the time.
 const ACCEPTED: f64 = 1e-9;
-/// Relative slowness over the fastest profile below which the programs have no interior.
+/// Relative excess over the fastest time below which the programs have no interior.
 const NO_INTERIOR: f64 = 1e-5;
-/// Share of the energy by which the tangents may overestimate it at the end.
+/// Largest overestimation by the tangents at convergence, as a share of the energy.
 const CONVERGED: f64 = 1e-3;
-/// Programs with tangents.
+/// Largest number of programs with tangents.
 const MAX_TANGENTS: usize = 8;
-/// Longest time of the uniformly slowed start, over that of the fastest profile.
+/// Largest time of the uniformly slowed start, relative to the fastest profile.
 const SLOWEST: f64 = 1e3;
 /// Steps of the search for the best time of the start.
 const PACE_STEPS: usize = 16;
-/// Time over that of the fastest profile beyond which the speed range is not worth computing.
+/// Time relative to the fastest profile beyond which the speed range has little effect.
 const SLOW: f64 = 4.0;
-/// Bisection steps for a slow profile by a speed cap.
+/// Bisection steps for the speed cap of a slow profile.
 const CAP_STEPS: usize = 40;
 
 /// The solution of the relaxation of a problem.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnergyBound {
-    /// No profile on the grid gets below this in the time, J.
+    /// Lower bound of the energy of profiles on the grid in the time, J.
     pub lower_bound: f64,
-    /// ṡ² at the nodes of the relaxed optimum, which a profile need not reach.
+    /// ṡ² at the nodes of the relaxed optimum, which may be infeasible.
     pub b: Vec<f64>,
 }
 
-/// A lower bound of the energy; arguments as of [`minimize_energy`]. None if the time is too
+/// A lower bound of the energy; arguments as for [`minimize_energy`]. None if the time is too
 /// short or the solver fails.
 pub fn energy_bound(
     grid: &PathGrid,
@@ -89,7 +89,7 @@ pub fn energy_bound(
     fastest: &Profile,
     duration: f64,
 ) -> Option<EnergyBound> {
-    // Without room between the fastest and the given time the programs have no interior.
+    // At the fastest time the programs have no interior.
     if duration.is_nan() || duration < fastest.duration() * (1.0 + NO_INTERIOR) {
         return None;
     }
@@ -103,10 +103,9 @@ pub fn energy_bound(
     Some(EnergyBound { lower_bound, b: relaxed.b })
 }
 
-/// The profile of least energy that takes at most `duration` (s, may be infinite) from rest to
-/// rest and keeps the limits at both ends of each interval. `fastest` is the fastest profile on
-/// the same grid; `relaxed` the relaxation of this problem, or of one on the same nodes with wider
-/// limits.
+/// The profile of least energy from rest to rest in at most `duration` (s, may be infinite)
+/// within the limits at both ends of each interval. `fastest` is the fastest profile on the same
+/// grid; `relaxed` the relaxation of this problem, or of one on the same nodes with wider limits.
 pub fn minimize_energy(
     grid: &PathGrid,
     limits: &PathLimits,
@@ -173,7 +172,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Takes the solution of a program if it is verified and better.
+    /// Accepts the solution of a program if it is verified and better.
     fn offer(&mut self, step: &Step) {
         let Some(profile) = Profile::new(self.grid.s().to_vec(), step.b.clone()) else {
             return;
@@ -190,8 +189,8 @@ impl Search<'_> {
     }
 }
 
-/// The time up to `duration` in which the uniformly slowed fastest profile costs least, s: holding
-/// and base power may make slow motions expensive. It sets the scales of the programs.
+/// The time up to `duration` at which the uniformly slowed fastest profile costs least, s; holding
+/// and base power can make slow motions expensive. It sets the scales of the programs.
 fn best_pace(grid: &PathGrid, model: &EnergyModel, fastest: &Profile, duration: f64) -> f64 {
     let cost = |log: f64| {
         let slower = fastest.scaled_to(fastest.duration() * log.exp());
@@ -215,8 +214,8 @@ fn best_pace(grid: &PathGrid, model: &EnergyModel, fastest: &Profile, duration: 
     }
 }
 
-/// The fastest profile made slower: uniformly if the limits allow that (friction need not fall
-/// with the other loads), else by a cap on the path speed.
+/// The slowed fastest profile: uniformly if the limits permit it (friction does not fall with the
+/// other loads), otherwise by a cap on the path speed.
 fn slowed(
     grid: &PathGrid,
     limits: &PathLimits,
@@ -245,8 +244,8 @@ fn slowed(
     best.or_else(|| Some(fastest.clone()).filter(kept))
 }
 
-/// Potential energy and Coulomb work of the path, J, as far as the model counts work: Simpson's
-/// rule, exact for coefficients that are linear in s.
+/// Potential energy and Coulomb work of the path, J, with the work weight of the model. Simpson's
+/// rule is exact for coefficients that are linear in s.
 fn path_constant(grid: &PathGrid, model: &EnergyModel) -> f64 {
     let force =
         |p: &PathPoint| -> f64 { (0..DOF).map(|j| (p.g[j] + p.coulomb[j]) * p.q1[j]).sum() };

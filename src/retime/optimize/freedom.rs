@@ -1,4 +1,4 @@
-//! Freedoms of a stream beyond its original movements.
+//! What a stream may change relative to its original movements.
 
 use std::collections::BTreeSet;
 
@@ -18,25 +18,25 @@ pub enum Bound {
     Robot,
 }
 
-/// Freedoms of a stream beyond its original movements.
+/// What a stream may change relative to its original movements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Freedom {
     /// TCP speed along lines and arcs; [`Bound::Original`] includes their programmed speed.
     pub tcp: Bound,
     /// Joint speeds, and the TCP speed of joint movements.
     pub joints: Bound,
-    /// Joint accelerations, jerks and torques; `None` where the limits of the robot are known.
+    /// Joint accelerations, jerks and torques; `None` if the limits of the robot are known.
     pub loads: Option<Loads>,
-    /// How far free movements may leave their path, m; 0 where none is free.
+    /// Largest deviation of free movements from their path, m; 0 if none is free.
     pub deviation: f64,
-    /// Statements of lines, arcs and waits that the user made free; joint movements are.
+    /// Lines, arcs and waits that the user declares free; joint movements always are.
     pub freed: BTreeSet<Span>,
-    /// Keep-out zones of arm and tool where they leave their path.
+    /// Keep-out zones for arm and tool off their path.
     pub keep_out: Vec<Obstacle>,
 }
 
 impl Freedom {
-    /// None.
+    /// No freedom.
     pub fn none() -> Freedom {
         Freedom {
             tcp: Bound::Original,
@@ -48,7 +48,7 @@ impl Freedom {
         }
     }
 
-    /// Largest loads of the joints.
+    /// Largest joint loads.
     pub fn loads(&self, model: &Model) -> Loads {
         self.loads.unwrap_or_else(|| Loads::limits(model))
     }
@@ -61,13 +61,13 @@ impl Freedom {
         }
     }
 
-    /// The same without leaving any path.
+    /// The same without deviation from paths.
     #[must_use]
     pub fn strict(&self) -> Freedom {
         Freedom { deviation: 0.0, ..self.clone() }
     }
 
-    /// How far a movement may leave its path, m, more than the least that is always allowed.
+    /// Permitted deviation of a movement from its path, m, beyond the tolerance of each path.
     pub fn free_deviation(&self, movement: &Movement) -> f64 {
         let joint = matches!(movement.form, MoveForm::AbsJ | MoveForm::Joint);
         let free = joint || self.freed.contains(&movement.span);

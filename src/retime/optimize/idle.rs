@@ -1,4 +1,4 @@
-//! Dwells: holding energy and the break-even of the brakes.
+//! Dwells: holding energy and break-even time of the brakes.
 
 use super::reason::Reason;
 use crate::arm::dynamics::Load;
@@ -10,24 +10,24 @@ use crate::retime::motion::Simulation;
 use crate::retime::motion::timeline::{WaitBasis, What};
 use crate::retime::path::joint_path::{DOF, Joints};
 
-/// Uninterrupted waits at one place.
+/// Consecutive waits at one place.
 #[derive(Clone, Debug)]
 pub struct Dwell {
     /// Indices of the events.
     pub events: Vec<usize>,
-    /// The longest of its waits.
+    /// Statement of the longest wait.
     pub span: Span,
     /// Known length, s.
     pub duration: f64,
-    /// Where the robot stands, rad.
+    /// Joint angles, rad.
     pub q: Joints,
     /// Tool and payload that it holds.
     pub load: Load,
-    /// Mean holding power by joint, W.
+    /// Mean holding power per joint, W.
     pub holding_w: Joints,
-    /// s; `None` where nothing is saved or no brake is known.
+    /// Break-even time, s; `None` if nothing is saved or the robot has no known brake.
     pub break_even_s: Option<f64>,
-    /// Energy that closing the brakes would save, J; 0 below the break-even.
+    /// Energy that closing the brakes would save, J; 0 below the break-even time.
     pub potential_j: f64,
     /// Why the program is not changed.
     pub reason: Reason,

@@ -1,4 +1,4 @@
-//! Keep-out zones of movements that may leave their path: boxes and planes of the cell.
+//! Keep-out zones (boxes and planes of the cell) for movements that may leave their path.
 
 use crate::arm::kinematics::{Body, Capsule, Tcp};
 use crate::arm::robot::Model;
@@ -8,15 +8,15 @@ use crate::retime::motion::timeline::Run;
 
 use super::freedom::Freedom;
 
-/// Arm and tool of a run among the keep-out zones; `None` where there are none, or where the run keeps
-/// to a programmed path that enters them itself.
+/// Arm and tool of a run with the keep-out zones; `None` without zones, or if the run keeps to a
+/// programmed path that itself enters a zone.
 pub fn body<'a>(model: &'a Model, run: &Run, freedom: &Freedom) -> Option<Body<'a>> {
     let free = run.moves.iter().any(|record| freedom.free_deviation(&record.movement) > 0.0);
     let body = around(model, &run.legs.first()?.tool, freedom)?;
     (free || !enters(&body, run)).then_some(body)
 }
 
-/// Arm and tool among the keep-out zones; `None` where there are none.
+/// Arm and tool with the keep-out zones; `None` without zones.
 pub fn around<'a>(model: &'a Model, tool: &Tcp, freedom: &Freedom) -> Option<Body<'a>> {
     if freedom.keep_out.is_empty() {
         return None;
@@ -28,10 +28,10 @@ pub fn around<'a>(model: &'a Model, tool: &Tcp, freedom: &Freedom) -> Option<Bod
     Some(Body::new(model, tool, &freedom.keep_out))
 }
 
-/// Distance that stands for one unit of the share, m.
+/// Change of the clearance that changes the share by one, m.
 const SCALE: f64 = 0.1;
 
-/// The clearance as a share of a limit: 1 at the clearance `kept` (m), more below it.
+/// The clearance as a share of a limit: 1 at the clearance `kept` (m), larger below it.
 pub(super) fn share(body: &Body<'_>, q: &[f64], kept: f64) -> f64 {
     let [room, _] = body.margins(q);
     (1.0 + (kept - room) / SCALE).max(0.0)
@@ -52,7 +52,7 @@ pub(super) fn enters(body: &Body<'_>, run: &Run) -> bool {
     })
 }
 
-/// Time below which a stretch of a stream is not halved again, s.
+/// Duration below which a stretch of a stream is not halved again, s.
 const FINEST: f64 = 1e-4;
 
 /// A stretch of a piece: time (s) and clearance (m) at both ends.
@@ -61,9 +61,9 @@ struct Stretch {
     end: (f64, f64),
 }
 
-/// A lower bound of the clearance of arm and tool, m, along the realised motion of a stream and along
-/// the polygon of its points: the clearance at both ends of a stretch less the largest motion in
-/// between. Stretches with little clearance are halved.
+/// A lower bound of the clearance of arm and tool (m) along the realised motion of a stream and
+/// along the polygon of its points: the clearance at both ends of a stretch less the largest
+/// displacement in between. Stretches of small clearance are halved.
 pub(super) fn least_room(model: &Model, body: &Body<'_>, stream: &Stream) -> f64 {
     let reach: f64 = body.capsules(stream.start()).iter().map(Capsule::length).sum();
     let mut least = f64::INFINITY;
@@ -85,7 +85,7 @@ pub(super) fn least_room(model: &Model, body: &Body<'_>, stream: &Stream) -> f64
     least
 }
 
-/// The sum of the largest speeds of the serial joints on a piece, rad/s.
+/// Sum of the largest speeds of the serial joints on a piece, rad/s.
 fn turning(model: &Model, piece: &Piece) -> f64 {
     let (_, end, _) = piece.at(piece.length);
     let [begin, end] = [&piece.qd, &end].map(|qd| model.kinematics.to_serial(qd));

@@ -1,50 +1,50 @@
-//! Margins of an attempt at a stream to the limits.
+//! Margins to the limits in one attempt at a stream.
 
 use super::check::Check;
 
-/// Margin to acceleration and torque limits at first: what a stream between nodes needs.
+/// Initial share of acceleration and torque limits; a stream deviates between nodes.
 const FIRST_MARGIN: f64 = 0.98;
-/// Margin to speed ceilings where they were exceeded.
+/// Share of the speed ceilings after they were exceeded.
 const SPEED_MARGIN: f64 = 0.995;
-/// Reach of lower ceilings at first, m: half of a [`LONGEST_STEP`](super::run_plant::LONGEST_STEP).
+/// Initial reach of lower ceilings, m: half of a [`LONGEST_STEP`](super::run_plant::LONGEST_STEP).
 const FIRST_REACH: f64 = 0.002;
-/// Placing of the points at first, share of the tolerance of the path.
+/// Initial tolerance of the spacing of points, as a share of the path tolerance.
 const FIRST_SPACING: f64 = 0.1;
-/// Share of the allowed distance from the path that the polishing may use at first.
+/// Initial share of the allowed distance from the path in polishing.
 pub(super) const FIRST_DISTANCE: f64 = 0.95;
 
-/// Clearance to keep-out zones at first, m: a motion is sampled in steps.
+/// Initial clearance to keep-out zones, m; a motion is sampled in steps.
 const FIRST_ROOM: f64 = 0.005;
-/// Factor on the tolerance of the points' placing.
+/// Factor that tightens the spacing tolerance.
 const CLOSER: f64 = 0.7;
-/// Factor on the correction of an excess.
+/// Factor that enlarges the correction of an excess.
 const FURTHER: f64 = 1.002;
 
 /// Margins and tolerances of one attempt.
 #[derive(Clone)]
 pub(super) struct Margins {
-    /// Share of acceleration and torque limits that the intended motion may use.
+    /// Share of acceleration and torque limits for the reference motion.
     pub(super) load: f64,
     /// Share of the speed ceilings.
     pub(super) speed: f64,
-    /// Distance before and behind a lower ceiling from which it holds, m: a stream is shaped at
-    /// places some way apart.
+    /// Distance by which a lower ceiling is extended to both sides, m: a stream is sampled at
+    /// discrete places.
     pub(super) reach: f64,
-    /// Tolerance of the points' placing, m.
+    /// Tolerance of the spacing of points, m.
     pub(super) spacing: f64,
-    /// Distance of the points' polygon from the path that their placing expects, m.
+    /// Distance of the polygon from the path that the spacing of points permits, m.
     pub(super) polygon: f64,
-    /// Share of the allowed distance of that polygon that the polishing may use; infinite until a check
-    /// finds the polygon too far away.
+    /// Share of the allowed distance of that polygon in polishing; infinite until a check finds an
+    /// excess.
     pub(super) edges: f64,
-    /// Share of the allowed distance from the path that the polishing may use.
+    /// Share of the allowed distance from the path in polishing.
     pub(super) distance: f64,
-    /// Clearance that the polishing keeps to keep-out zones, m.
+    /// Clearance to keep-out zones in polishing, m.
     pub(super) room: f64,
 }
 
 impl Margins {
-    /// Where the path has this tolerance, m.
+    /// The initial margins for a path tolerance, m.
     pub(super) fn first(tolerance: f64) -> Margins {
         Margins {
             load: FIRST_MARGIN,
@@ -58,18 +58,18 @@ impl Margins {
         }
     }
 
-    /// Share of the torque limits. There is no margin at first: where the limit is the largest torque of
-    /// the program, holding the arm may need all of it.
+    /// Share of the torque limits; initially 1: the limit may be the largest torque of the program,
+    /// and this may be the holding torque.
     pub(super) fn torque(&self) -> f64 {
         (self.load / FIRST_MARGIN).min(1.0)
     }
 
-    /// Lower loads, where no stream was found.
+    /// Lowers the loads after no stream was found.
     pub(super) fn lighten(&mut self) {
         self.load *= FIRST_MARGIN;
     }
 
-    /// The limits themselves.
+    /// No margins.
     pub(super) fn none() -> Margins {
         Margins {
             load: 1.0,
@@ -83,13 +83,13 @@ impl Margins {
         }
     }
 
-    /// The largest share of the limits that apply.
+    /// The largest used share of the limits that apply.
     pub(super) fn worst(&self, check: &Check) -> f64 {
         let polygon = if self.edges.is_infinite() { 0.0 } else { check.polygon };
         Check { polygon, ..*check }.worst()
     }
 
-    /// Tighter margins for a new attempt.
+    /// Tightens the margins for a new attempt.
     pub(super) fn tighten(&mut self, check: &Check) {
         let load = check.torque.max(check.acceleration);
         if load > 1.0 {
@@ -105,7 +105,7 @@ impl Margins {
         if check.deviation > 1.0 {
             self.distance *= FIRST_DISTANCE / check.deviation.min(2.0);
         }
-        // Distant points cause ripples of speed and path.
+        // A wide spacing causes ripples of speed and path.
         if check.tcp_speed > 1.0 || check.deviation > 1.0 {
             self.spacing *= CLOSER;
         }
@@ -115,9 +115,9 @@ impl Margins {
         }
     }
 
-    /// Tighter margins for more polishing of a stream that nearly holds.
+    /// Tightens the margins for further polishing of a stream with a small excess.
     pub(super) fn tighten_a_little(&mut self, check: &Check) {
-        // A share slightly above 1 would hardly change the margin.
+        // A share slightly above 1 alone would hardly change the margin.
         let over = |share: f64| if share > 1.0 { share * FURTHER } else { 1.0 };
         self.room += check.intrusion_m.max(0.0);
         self.load /= over(check.torque);

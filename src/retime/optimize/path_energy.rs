@@ -1,38 +1,36 @@
-//! The energy of a speed profile on a path, part by part.
+//! The energy of a speed profile on a path by parts.
 //!
-//! Power at a joint is p = τ q̇ with friction. Braking power that no other joint uses (per joint,
-//! or as a sum on a common bus) is lost but for the share that is given back; a motor adds
-//! copper losses k τ². Other costs of the literature leave out the work, and count torques or
-//! speeds instead.
+//! Power at a joint is p = τ q̇ with friction. Of the braking power that no other joint uses (per
+//! joint, or as a sum on a common bus) a share is fed back, the rest is lost; a motor adds copper
+//! losses k τ². Costs from the literature replace the work by torques or speeds.
 
 use crate::retime::motion::stream::{DOF, Joints};
 use crate::retime::motion::timing::grid::{PathGrid, PathPoint};
 use crate::retime::motion::timing::profile::Profile;
 
-/// Who can use the braking power of a joint.
+/// Use of the braking power of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sharing {
-    /// Nobody: each joint's negative power is braked away.
+    /// None: the negative power of each joint is dissipated.
     PerJoint,
-    /// The other joints: only a negative sum is braked away.
+    /// By the other joints: only a negative sum is dissipated.
     Bus,
 }
 
-/// What a motion costs.
+/// Coefficients of the cost of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EnergyModel {
-    /// Weight of the mechanical work, friction included: 1, or 0 where something else stands for
-    /// the energy.
+    /// Weight of the mechanical work with friction: 1, or 0 for substitutes of the energy.
     pub work: f64,
     /// Cost of the speed of a joint, W/(rad/s)²: 0 for energies.
     pub speed: f64,
     /// Copper loss of each joint, W/(Nm)².
     pub loss: Joints,
-    /// Power while the robot is on, W. Zero where the time is spent anyway.
+    /// Power while the robot is on, W; 0 if the time is fixed.
     pub base_w: f64,
-    /// Who can use braking power.
+    /// Use of braking power.
     pub sharing: Sharing,
-    /// Share of the unused braking power that the supply takes back, 0…1.
+    /// Share of the unused braking power that is fed back, 0…1.
     pub regeneration: f64,
 }
 
@@ -43,15 +41,15 @@ pub struct EnergyParts {
     pub time: f64,
     /// ∫ Σ `τ_rigid` q̇.
     pub mechanical: f64,
-    /// Coulomb and viscous friction.
+    /// Work of Coulomb and viscous friction.
     pub friction: f64,
     /// Copper losses.
     pub copper: f64,
-    /// Braking energy that is not given back.
+    /// Braking energy that is not fed back.
     pub drive: f64,
     /// Base power over the duration.
     pub base: f64,
-    /// What stands for energy where squares of speeds count.
+    /// Cost of squared speeds, a substitute for energy.
     pub speed: f64,
 }
 
@@ -72,13 +70,12 @@ const GAUSS: [(f64, f64); 5] = [
 ];
 
 impl EnergyModel {
-    /// Work, copper losses `loss` (W/(Nm)²), and braking power that is lost where it can't be
-    /// shared; nothing else.
+    /// Work, copper losses `loss` (W/(Nm)²) and braking power that is lost unless shared.
     pub fn electrical(loss: Joints, sharing: Sharing) -> EnergyModel {
         EnergyModel { work: 1.0, speed: 0.0, loss, base_w: 0.0, sharing, regeneration: 0.0 }
     }
 
-    /// Braking power that is lost, W, at the joint powers `p` (W).
+    /// Lost braking power, W, at the joint powers `p` (W).
     pub(super) fn braked(&self, p: &Joints) -> f64 {
         let negative = match self.sharing {
             Sharing::PerJoint => p.iter().map(|p| (-p).max(0.0)).sum(),
@@ -87,7 +84,7 @@ impl EnergyModel {
         (1.0 - self.regeneration) * negative
     }
 
-    /// Powers at one place and the path speed `v`, acceleration `u`, as energies per second.
+    /// Powers at one place with path speed `v` and acceleration `u`, as energies per second.
     fn power(&self, point: &PathPoint, v: f64, u: f64) -> EnergyParts {
         let rigid = point.rigid_torque(u, v * v);
         let friction = point.friction_torque(v);
@@ -107,8 +104,8 @@ impl EnergyModel {
     }
 }
 
-/// The energies of `profile`, whose nodes are those of the grid, by Gauss quadrature in time on
-/// each interval with coefficients that are linear in s.
+/// The energies of `profile` on the nodes of the grid: Gauss quadrature in time on each interval
+/// with coefficients that are linear in s.
 pub fn evaluate(grid: &PathGrid, profile: &Profile, model: &EnergyModel) -> EnergyParts {
     let mut sum = EnergyParts::default();
     for (k, ([begin, end], piece)) in grid.ends().iter().zip(profile.pieces()).enumerate() {

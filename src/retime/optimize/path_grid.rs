@@ -1,23 +1,23 @@
-//! The grid on which a run is timed anew, with nodes at joint reversals and one-sided friction.
+//! The grid for the timing of a run, with nodes at joint reversals and one-sided friction.
 
 use crate::arm::robot::Model;
 use crate::retime::motion::sampling::{self, Loaded, SpeedCap};
 use crate::retime::motion::timing::grid::{GridError, PathGrid, PathPoint};
 use crate::retime::path::joint_path::{DOF, JointPath, Piece};
 
-/// Parts of a piece that are searched for one reversal of a joint each.
+/// Parts of a piece, each searched for one reversal per joint.
 const PARTS: usize = 4;
-/// Bisections that locate a reversal.
+/// Bisection steps to a reversal.
 const BISECTIONS: usize = 40;
-/// Joint rate below which its sign is rounding, rad per unit of s.
+/// Joint rate below which its sign is a rounding error, rad per unit of s.
 const STILL: f64 = 1e-7;
-/// Distance of nodes that is rounding, share of the path.
+/// Distance of nodes at rounding level, as a share of the path.
 const LEAST_DISTANCE: f64 = 1e-8;
-/// Nodes nearer to a reversal than this are moved there, m of the path or share of a short one.
+/// Nodes closer to a reversal are moved there; m of the path or share of a short one.
 const NODE_DISTANCE: (f64, f64) = (1e-5, 1e-4);
 
-/// Nodes in s: about `count` intervals, closer where speeds change, and the reversals of joints,
-/// where dry friction jumps.
+/// Nodes in s: about `count` intervals, denser where speeds change, and the reversals of joints,
+/// where Coulomb friction jumps.
 pub fn nodes(model: &Model, path: &JointPath, caps: &[SpeedCap], count: usize) -> Vec<f64> {
     let mut nodes = sampling::nodes(model, path, caps, count);
     let apart = NODE_DISTANCE.0.min(NODE_DISTANCE.1 * path.length());
@@ -64,8 +64,8 @@ fn turns(piece: &Piece) -> Vec<f64> {
     turns
 }
 
-/// The grid at these nodes, with the speed caps of the legs. At rest, at both ends, dry friction is 0:
-/// it has no direction there.
+/// The grid at these nodes with the speed caps of the legs. At rest at both ends Coulomb friction
+/// is 0, as it has no direction there.
 ///
 /// # Errors
 /// Values that are not finite.

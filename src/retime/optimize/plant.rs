@@ -1,18 +1,18 @@
-//! The robot as the optimiser of a stream sees it, and the cost of a realised stream.
+//! The interface of a robot for stream optimisation, and the cost of a realised stream.
 
 use super::path_energy::{EnergyModel, EnergyParts};
 use crate::retime::motion::stream::{DOF, Joints, Piece, Stream};
 
-/// Shares of the limits of a path.
+/// Used shares of the path limits.
 pub type PathShares = [f64; 4];
 
-/// The robot that runs a stream.
+/// The robot that executes a stream.
 pub trait Plant {
-    /// Torques without dry friction, Nm, at positions (rad), velocities and accelerations.
+    /// Torques without Coulomb friction, Nm, at angles (rad), velocities and accelerations.
     fn torque(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> Joints;
 
-    /// The change of [`torque`](Plant::torque) per change of q (Nm/rad), q̇ and q̈ of each joint:
-    /// `[kind][joint that changes][torque]`. By differences, where nothing better is known.
+    /// Derivatives of [`torque`](Plant::torque) by q (Nm/rad), q̇ and q̈ of each joint:
+    /// `[kind][joint that changes][torque]`. The default takes finite differences.
     fn torque_derivatives(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> [[Joints; DOF]; 3] {
         let here = self.torque(q, qd, qdd);
         std::array::from_fn(|kind| {
@@ -26,21 +26,21 @@ pub trait Plant {
         })
     }
 
-    /// Dry friction of each joint, Nm, which acts against its motion.
+    /// Coulomb friction of each joint, Nm.
     fn dry_friction(&self) -> Joints;
 
     /// Largest |τ| of each joint, Nm.
     fn torque_limit(&self) -> Joints;
 
-    /// Shares of the other limits: TCP speed, joint speeds at this place of the path, distance of the
-    /// TCP from the path, and nearness to keep-out zones. `place` is the index of the previous place on
-    /// the path and is updated: a path may cross itself.
+    /// Shares of the other limits: TCP speed, joint speeds at this place of the path, distance of
+    /// the TCP from the path, and clearance to keep-out zones. `place` is the index of the previous
+    /// place on the path and is updated, since a path may cross itself.
     fn path_shares(&self, _q: &Joints, _qd: &Joints, _place: &mut usize) -> PathShares {
         PathShares::default()
     }
 
     /// Share of the limits at a position on the polygon of the points: distance from the path and
-    /// nearness to keep-out zones. `place` as above.
+    /// clearance to keep-out zones. `place` as above.
     fn polygon_share(&self, _q: &Joints, _place: &mut usize) -> f64 {
         0.0
     }
@@ -50,15 +50,15 @@ pub trait Plant {
         LEAST_STEPS
     }
 
-    /// Torques with dry friction, Nm; none at rest.
+    /// Torques with Coulomb friction, Nm; without it at rest.
     fn full_torque(&self, q: &Joints, qd: &Joints, qdd: &Joints) -> Joints {
         let (smooth, dry) = (self.torque(q, qd, qdd), self.dry_friction());
         std::array::from_fn(|j| smooth[j] + dry[j] * direction(qd[j]))
     }
 }
 
-/// Speed below which a joint is at rest, rad/s: at the end of a motion dry friction does not help to
-/// brake.
+/// Speed below which a joint is at rest, rad/s: at the end of a motion Coulomb friction does not
+/// help to brake.
 pub(super) const STILL: f64 = 1e-9;
 
 /// The sign of a velocity, 0 at rest.
@@ -68,24 +68,24 @@ pub(super) fn direction(velocity: f64) -> f64 {
 
 /// Steps of the forward differences in q (rad), q̇ (rad/s) and q̈ (rad/s²).
 pub(super) const DIFFERENCES: [f64; 3] = [1e-5, 1e-4, 1e-3];
-/// Margin to the limits.
+/// Margin to the limits, as a share.
 pub(super) const ROOM: f64 = 1e-3;
-/// Least number of integration steps on a piece; even, for Simpson's rule.
+/// Smallest number of integration steps on a piece; even for Simpson's rule.
 pub(super) const LEAST_STEPS: usize = 8;
 
-/// Cost of the realised motion of a stream, and its shares of the limits.
+/// Cost of the realised motion of a stream and its used shares of the limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Realised {
-    /// Energies. Friction is the dry part; the viscous part is in the mechanical one, since a plant
-    /// does not separate them.
+    /// Energies. Friction contains the Coulomb part; the mechanical part contains the viscous one,
+    /// since a plant does not separate it.
     pub energy: EnergyParts,
-    /// The largest share of a torque limit or of a limit of the path.
+    /// The largest used share of a torque or path limit.
     pub worst_share: f64,
-    /// Sum over the samples of the shares beyond 1 less a small margin.
+    /// Sum over the samples of the excess of shares over 1 − `ROOM`.
     pub excess: f64,
 }
 
-/// Evaluates a stream on a plant, by Simpson's rule on each piece.
+/// Evaluates a stream on a plant by Simpson's rule on each piece.
 pub fn realise(stream: &Stream, plant: &impl Plant, model: &EnergyModel) -> Realised {
     let (dry, limit) = (plant.dry_friction(), plant.torque_limit());
     let mut out = Realised::default();
@@ -129,5 +129,5 @@ pub fn realise(stream: &Stream, plant: &impl Plant, model: &EnergyModel) -> Real
     out
 }
 
-/// Samples on the way from one point to the next, as shares of it.
+/// Samples on each edge of the polygon, as shares of its length.
 pub(super) const EDGE_PLACES: [f64; 4] = [0.25, 0.5, 0.75, 1.0];

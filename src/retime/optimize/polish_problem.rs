@@ -1,4 +1,4 @@
-//! The merit of a stream under polishing, and its quadratic model around a stream.
+//! The merit function of stream polishing and its quadratic model.
 
 use super::banded::Banded;
 use super::banded_program::Row;
@@ -10,62 +10,62 @@ use super::stream_points::Points;
 use super::stream_reference::Reference;
 use crate::retime::motion::stream::{DOF, Joints, Piece, Stream, StreamError};
 
-/// What a distance of the stream from the path of its reference costs.
+/// Cost of the distance of a stream from the path of its reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathPenalty {
-    /// Distance that costs a noticeable share of the energy; infinite for a free path.
+    /// Distance with a noticeable cost, m; infinite for a free path.
     pub tolerance: f64,
-    /// Weight of each joint in the distance.
+    /// Weight of each joint in the distance, m/rad.
     pub lever: Joints,
 }
 
-/// Share of the energy that a mean distance of the tolerance costs.
+/// Cost of a mean distance equal to the tolerance, as a share of the energy.
 const DEVIATION_PRICE: f64 = 0.02;
-/// Energies that the full violation of a limit at one place costs.
+/// Price of an excess of 1, in units of the initial energy.
 const VIOLATION_PRICE: f64 = 5.0;
-/// Share of its limit from which a row is part of a program.
+/// Share of its limit from which a row is in a program.
 const NEAR: f64 = 0.75;
 /// Unit of the variables, rad.
 pub(super) const UNIT: f64 = 0.01;
-/// Smallest tolerance.
+/// Smallest tolerance, m.
 const TIGHTEST: f64 = 1e-7;
-/// Steps to the nearest point of the path.
+/// Iterations of the search for the nearest point of the path.
 const NEAREST_STEPS: usize = 6;
-/// Speed below which a path has no direction.
+/// Weighted speed below which a path has no direction, m/s.
 const SLOWEST: f64 = 1e-6;
-/// Rounding of the braking loss, as a share of the peak power.
+/// Smoothing of the braking loss, as a share of the peak power.
 const ROUND_POWER: f64 = 0.02;
-/// Rounding of dry friction, as a share of the peak speed.
+/// Smoothing of Coulomb friction, as a share of the peak speed.
 const ROUND_SPEED: f64 = 0.02;
-/// Least peak power for the rounding, W.
+/// Smallest peak power for the smoothing, W.
 const LEAST_POWER: f64 = 1.0;
 /// Steps of Simpson's rule on a piece.
 const SIMPSON: usize = 2;
 
-/// The polishing of one stream: what its merit is made of.
+/// The data of the merit function of one stream.
 pub(super) struct PolishProblem<'a, P> {
     reference: &'a Reference,
     plant: &'a P,
     model: &'a EnergyModel,
     penalty: &'a PathPenalty,
     pub(super) points: Points,
-    /// Energy of the stream at the beginning, J: the unit of the merit.
+    /// Initial energy of the stream, J: the unit of the merit.
     unit: f64,
-    /// Rounding of the braking loss, W.
+    /// Smoothing of the braking loss, W.
     round_power: f64,
-    /// Rounding of dry friction, rad/s.
+    /// Smoothing of Coulomb friction, rad/s.
     round_speed: f64,
-    /// Dry friction, Nm.
+    /// Coulomb friction, Nm.
     dry: Joints,
 }
 
-/// Torque, shares of the limits of the path and their derivatives at one place: `by[kind][i]` holds the change of
-/// them per change of q, q̇ or q̈ of joint i.
+/// Torque, shares of the path limits and their derivatives at one place. `torque_by[kind][i]` is
+/// the derivative by q, q̇ or q̈ of joint i.
 struct Linearised {
     torque: Joints,
     path: PathShares,
     torque_by: [[Joints; DOF]; 3],
-    /// Of each share of the path, by q and q̇; zero where all are far from their limits.
+    /// Derivative of each share by q and q̇; zero if all shares are far from 1.
     path_by: [[[f64; DOF]; 2]; 4],
 }
 
@@ -92,8 +92,8 @@ impl<'a, P: Plant> PolishProblem<'a, P> {
         })
     }
 
-    /// What the motion of a stream costs, and its merit: energy, priced violations of limits and
-    /// priced distance from the path, in energies of the first stream.
+    /// The realised motion of a stream and its merit: energy, priced excess of limits and priced
+    /// distance from the path, in units of the initial energy.
     pub(super) fn merit(&self, stream: &Stream) -> (Realised, f64) {
         let realised = realise(stream, self.plant, self.model);
         let price = self.deviation_price();
@@ -106,21 +106,20 @@ impl<'a, P: Plant> PolishProblem<'a, P> {
         (realised, merit)
     }
 
-    /// Largest distance of the realised motion from the path of the reference, in the units of
-    /// the levers.
+    /// Largest distance of the realised motion from the path of the reference, in lever units.
     pub(super) fn deviation(&self, stream: &Stream) -> f64 {
         let places = places(stream, |_| SIMPSON);
         places.iter().map(|p| norm(&self.offset(p).0)).fold(0.0, f64::max)
     }
 
-    /// Price of ∫ distance² dt, in energies.
+    /// Price of ∫ distance² dt, in units of the initial energy.
     fn deviation_price(&self) -> f64 {
         DEVIATION_PRICE
             / (self.penalty.tolerance.max(TIGHTEST).powi(2) * self.points.knots.duration())
     }
 
-    /// The vector from the nearest point of the reference's path to the place, scaled by the
-    /// levers, and the direction of the path there, of length one, zero at rest.
+    /// The vector from the nearest point of the reference path to the place, scaled by the levers,
+    /// and the unit direction of the path there, zero at rest.
     fn offset(&self, place: &Place) -> (Joints, Joints) {
         let lever = &self.penalty.lever;
         let stretch = self.reference.duration() / self.points.knots.duration();
@@ -141,7 +140,7 @@ impl<'a, P: Plant> PolishProblem<'a, P> {
         (offset, along)
     }
 
-    /// Torque and shares at a place; `near` as for the plant.
+    /// Torque and shares at a place; `near` as for [`Plant`].
     fn shares(&self, place: &Place, near: &mut usize) -> Linearised {
         Linearised {
             torque: self.plant.full_torque(&place.q, &place.qd, &place.qdd),
@@ -151,13 +150,13 @@ impl<'a, P: Plant> PolishProblem<'a, P> {
         }
     }
 
-    /// Adds the derivatives.
+    /// Computes the derivatives.
     fn linearise(&self, place: &Place, near: usize, lin: &mut Linearised) {
         lin.torque_by = self.plant.torque_derivatives(&place.q, &place.qd, &place.qdd);
         if lin.path.iter().all(|share| *share <= NEAR) {
             return;
         }
-        // Positions and speeds move the tool; accelerations do not.
+        // The path shares depend on angles and speeds, not on accelerations.
         for (kind, step) in DIFFERENCES.into_iter().enumerate().take(2) {
             for joint in self.points.joints.iter().copied() {
                 let mut state = [place.q, place.qd];
@@ -171,10 +170,10 @@ impl<'a, P: Plant> PolishProblem<'a, P> {
         }
     }
 
-    /// The quadratic model of merit and limits around a stream that exceeds limits by `excess`.
+    /// The quadratic model of merit and limits around a stream with this excess.
     pub(super) fn quadratic(&self, stream: &Stream, excess: f64) -> Quadratic {
         let size = self.points.size();
-        // A jerk touches four points.
+        // A jerk depends on four points.
         let width = (3 * self.points.joints.len()).min(size);
         let mut model = Quadratic {
             matrix: Banded::zeros(size, width),
@@ -289,8 +288,8 @@ impl<'a, P: Plant> PolishProblem<'a, P> {
         }
     }
 
-    /// Rounded less exact dry friction of a joint at a velocity, Nm, and the slope of the rounded
-    /// friction, Nms: without the rounding no step would cross the kink of its work at rest.
+    /// Smoothed minus exact Coulomb friction of a joint at a velocity, Nm, and the slope of the
+    /// smoothed one, Nms/rad. Without smoothing no step would cross the kink of the work at rest.
     fn rounded_friction(&self, joint: usize, velocity: f64) -> (f64, f64) {
         let root = velocity.hypot(self.round_speed);
         let dry = self.dry[joint];
@@ -300,8 +299,8 @@ impl<'a, P: Plant> PolishProblem<'a, P> {
         )
     }
 
-    /// Adds the loss of the powers at a place that are braked away: (√(p² + ε²) − p) / 2 for
-    /// each power p, with its slope and curvature.
+    /// Adds the braking loss at a place: (√(p² + ε²) − p) / 2 for each power p, with its slope and
+    /// curvature.
     fn add_brakes(
         &self,
         place: &Place,
@@ -343,10 +342,10 @@ impl<'a, P: Plant> PolishProblem<'a, P> {
     }
 }
 
-/// A place of the realised motion.
+/// A sample of the realised motion.
 struct Place {
     piece: usize,
-    /// Time in the piece, and weight in the integral, s.
+    /// Time in the piece, s; then the weight in the integral, s.
     tau: f64,
     seconds: f64,
     t: f64,
@@ -355,8 +354,8 @@ struct Place {
     qdd: Joints,
 }
 
-/// Places of a stream, an even number of steps apart on each piece, with the weights of Simpson's
-/// rule at the ends and the middle of pieces.
+/// Samples of a stream, an even number of steps on each piece, with the weights of Simpson's rule
+/// at the ends and in the middle of pieces.
 fn places(stream: &Stream, steps: impl Fn(&Piece) -> usize) -> Vec<Place> {
     let of = |(index, piece): (usize, Piece)| {
         let steps = steps(&piece);
@@ -377,29 +376,29 @@ fn places(stream: &Stream, steps: impl Fn(&Piece) -> usize) -> Vec<Place> {
     stream.pieces().enumerate().flat_map(of).collect()
 }
 
-/// Change of the quantities at a place per unit of a variable.
+/// Derivatives of the quantities at a place by one variable.
 struct Column {
     index: usize,
     joint: usize,
-    /// Change of the joint's position and velocity.
+    /// Derivatives of the joint angle and velocity.
     w: f64,
     w1: f64,
     torque: Joints,
     path: PathShares,
 }
 
-/// The model of the merit around a stream: ½ xᵀ H x + gᵀ x plus the price of violated limits.
+/// The model of the merit around a stream: ½ xᵀ H x + gᵀ x plus the price of exceeded limits.
 pub(super) struct Quadratic {
     pub(super) matrix: Banded,
     pub(super) gradient: Vec<f64>,
-    /// Limits of the path and of torque as rows with a price.
+    /// Rows of the path and torque limits with their price.
     pub(super) shares: Vec<Row>,
-    /// Price of the violated limits at x = 0.
+    /// Price of the exceeded limits at x = 0.
     pub(super) broken: f64,
 }
 
 impl Quadratic {
-    /// A share of a limit and how the variables change it.
+    /// Adds a share of a limit with its derivatives by the variables.
     fn add_share(&mut self, share: f64, weights: impl Iterator<Item = (usize, f64)>) {
         let terms = weights.collect();
         self.shares.push(Row { terms, bound: 1.0 - ROOM - share, price: VIOLATION_PRICE });

@@ -1,89 +1,88 @@
-//! Why a piece of a program stays as it is. `docs/reasons.md` explains each.
+//! Reasons for which a part of a program stays unchanged. `docs/reasons.md` explains each.
 
 /// A documented reason.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reason {
     /// The first movement after the start of the program.
     FirstMovement,
-    /// The robot's position before it is not known.
+    /// The robot position before the movement is unknown.
     UnknownStart(String),
-    /// A target or other argument that may be another one at the next run.
+    /// A target or other argument that may have another value in the next run.
     NotConstant(String),
-    /// Its target stands in the movement itself, where `ModPos` changes the text.
+    /// The target is written in the movement itself, where `ModPos` changes the text.
     InlineTarget,
-    /// Something on which it depends may change while it runs.
+    /// A value on which it depends may change during its execution.
     Meanwhile(String),
-    /// It could not be worked out.
+    /// It could not be evaluated.
     Unresolved(String),
-    /// It does not run in the simulated cycle.
+    /// It is not executed in the simulated cycle.
     NotReached,
-    /// It stands in a compact IF, which holds one statement only.
+    /// It is in a compact IF, which holds one statement only.
     CompactIf,
-    /// The path can't be followed as programmed.
+    /// The path cannot be followed as programmed.
     Path(String),
     /// An instruction that does more than move.
     Instruction(String),
-    /// A movement that has its time already.
+    /// A movement with a programmed time.
     Timed,
-    /// An argument that changes the movement in a way that is not modelled.
+    /// An argument with an effect on the movement that is not modelled.
     Argument(String),
     /// A motion setting in force that would change a stream.
     Setting(String),
-    /// A handler of its routine that may begin it again, or that it stands in.
+    /// A handler of its routine may repeat it, or contains it.
     Handler(String),
-    /// An interrupt routine that may do something to it while it runs.
+    /// An interrupt routine may affect it during its execution.
     Interrupt(String),
-    /// External axes that move with it, or may.
+    /// External axes move with it, or may.
     ExternalAxes,
     /// Other statements between fly-by movements.
     LogicBetween,
-    /// An output that is set while its last movement, which flies on, is under way.
+    /// An output is set during its last movement, which ends in a fly-by point.
     EarlyOutput,
-    /// Fly-by movements that go on in another routine or branch.
+    /// Fly-by movements that continue in another routine or branch.
     Scattered,
-    /// Runs that begin or end at different statements at different times.
+    /// Runs that begin or end at different statements in different executions.
     Overlapping,
-    /// Its last movement does not stop, and what comes behind it may move on: another branch, or the
-    /// beginning of the program again.
+    /// Its last movement ends in a fly-by point, and a movement may follow: in another branch or at
+    /// the restart of the program.
     FliesOn,
-    /// The program has streams of joulepath already.
+    /// The program already contains streams of joulepath.
     Already,
-    /// The program declares a name of its own that streams need in RAPID's sense.
+    /// The program declares a name that streams use in its RAPID meaning.
     OwnName(String),
-    /// A point passed without a stop and without room for a zone.
+    /// A point passed without a stop and without space for a zone.
     SharpCorner,
-    /// It has an equivalent for externally guided motion beside the program, which takes so much
-    /// less, J.
+    /// An equivalent for externally guided motion outside the program saves this much, J.
     Guided(f64),
-    /// It goes nowhere.
+    /// The robot is already at the target.
     NoMotion,
-    /// Nothing is saved in the time that there is.
+    /// No energy is saved in the available time.
     NoSaving,
-    /// It saves in this share of the robots that are plausible, which is too few.
+    /// It saves energy in this share of the plausible robots, which is too small.
     UncertainSaving(f64),
-    /// A joint, from 1, has more to do than in the original cycle, which is all that is known of what it can;
-    /// no more in this share of the plausible robots.
+    /// A joint (from 1) of unknown torque limit would have a larger load than in the original
+    /// cycle; not so in this share of the plausible robots, which is too small.
     AsksMore(usize, f64),
-    /// The time asked for is below the possible, s.
+    /// The requested time is below the least time, s.
     TooShort(f64),
     /// No stream within the limits was found.
     NoStream(String),
-    /// It might leave its path, which comes into what the cell keeps free already.
+    /// It might leave its path, which already enters a keep-out zone.
     KeepOut,
-    /// More variants than a program should carry.
+    /// More variants than a program should contain.
     TooManyVariants(usize),
-    /// The emitted text did not hold what was promised.
+    /// The emitted text failed its verification.
     Verification(String),
-    /// A dwell: the break-even of the brake is not reached.
+    /// A dwell below the break-even time of the brake (s).
     ShortDwell(f64),
-    /// A dwell of unknown length.
+    /// A dwell of unknown duration.
     UnknownDwell,
-    /// A dwell that pays, but needs a setting of the controller.
+    /// A dwell above the break-even time (s) that needs a controller setting.
     NeedsSetting(f64),
 }
 
 impl Reason {
-    /// The name under which `docs/reasons.md` explains it.
+    /// Its name in `docs/reasons.md`.
     pub fn code(&self) -> &'static str {
         match self {
             Reason::FirstMovement => "first-movement",
@@ -128,8 +127,7 @@ impl Reason {
 }
 
 impl Reason {
-    /// True if something that a user may want rewritten was refused; not where there is
-    /// nothing to do.
+    /// True if a change that a user may want was refused; false if there is nothing to do.
     pub fn is_refusal(&self) -> bool {
         !matches!(
             self,

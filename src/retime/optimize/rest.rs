@@ -1,7 +1,6 @@
-//! A wait of known length at a nearby pose with less holding power: the way there, the wait, the way back.
+//! A wait of known duration at a nearby pose of less holding power: move there, wait, move back.
 //!
-//! Holding power as in Paes et al. 2014, table 3; the way there and back has to cost less than it
-//! saves.
+//! Holding power as in Paes et al. 2014, table 3; the motions must cost less than the pose saves.
 
 use super::allowed::Loads;
 use super::check::{Room, check};
@@ -16,7 +15,7 @@ use crate::retime::motion::stream::{Joints, Stream};
 use crate::retime::motion::timed::TimedMotion;
 use crate::retime::path::joint_path::DOF;
 
-/// A robot that stands and waits.
+/// A robot at standstill.
 #[derive(Clone, Copy)]
 pub struct Standstill<'a> {
     /// The robot.
@@ -25,47 +24,46 @@ pub struct Standstill<'a> {
     pub load: &'a Load,
     /// The tool.
     pub tool: &'a Tcp,
-    /// Where, rad.
+    /// Joint angles, rad.
     pub q: Joints,
-    /// How long, s.
+    /// Duration, s.
     pub duration: f64,
-    /// Largest loads of the joints.
+    /// Largest joint loads.
     pub loads: &'a Loads,
-    /// Arm and tool among the keep-out zones.
+    /// Arm and tool with the keep-out zones.
     pub body: Option<&'a Body<'a>>,
 }
 
-/// The wait with a pose nearby.
+/// The wait at a nearby pose.
 #[derive(Clone, Debug)]
 pub struct Rest {
-    /// The way there, as emitted.
+    /// Motion to the pose, as emitted.
     pub out: Stream,
-    /// How long the robot stands there, s.
+    /// Duration of standstill at the pose, s.
     pub wait_s: f64,
-    /// The way back, as emitted.
+    /// Motion back, as emitted.
     pub back: Stream,
     /// Energy of the whole wait.
     pub energy: EnergyParts,
-    /// Energy without moving, J.
+    /// Energy without motion, J.
     pub energy_before_j: f64,
 }
 
-/// Shares of the way to the best pose that are tried.
+/// Tried shares of the displacement to the best pose.
 const SHARES: [f64; 4] = [0.25, 0.5, 0.75, 1.0];
-/// Points of a way, fewest and most.
+/// Fewest and most points of a motion.
 const POINTS: (usize, usize) = (4, 16);
-/// Step between the times of a way that are tried.
+/// Ratio of successive tried durations of a motion.
 const SLOWER: f64 = 1.25;
-/// Share of the wait that the ways may take.
+/// Largest share of the wait for the two motions.
 const MOVING: f64 = 0.8;
-/// A rest has to save this share of what the holding takes, at least.
+/// Least saving, as a share of the holding energy.
 const WORTHWHILE: f64 = 0.05;
-/// Least way that is worth a stream, rad.
+/// Smallest joint displacement that is worth a stream, rad.
 const LEAST_WAY: f64 = 0.02;
 
-/// The rest of least energy at a pose no joint of which is farther than `distance` (rad) away, in
-/// streams with `spacing` (s) between their points at least. `None` where standing still is as
-/// good.
+/// The rest of least energy at a pose within `distance` (rad) in each joint, with streams of at
+/// least `spacing` (s) between points. `None` if it saves too little.
 pub fn rest(standstill: &Standstill<'_>, distance: f64, spacing: f64) -> Option<Rest> {
     let Standstill { model, load, q, duration, .. } = standstill;
     let standing = standing(model, None, load, q, distance);
@@ -82,7 +80,7 @@ pub fn rest(standstill: &Standstill<'_>, distance: f64, spacing: f64) -> Option<
         let mut time = POINTS.0 as f64 * spacing;
         while 2.0 * time <= MOVING * duration {
             match trip(standstill, &low, time, spacing) {
-                // Slower ways leave less time at the pose: beyond the best time the energy only rises.
+                // Beyond the best duration slower motions only raise the energy.
                 Ok(found) if best.as_ref().is_some_and(|best| taken(best) <= taken(&found)) => {
                     break;
                 }
@@ -97,15 +95,15 @@ pub fn rest(standstill: &Standstill<'_>, distance: f64, spacing: f64) -> Option<
     best.min_by(|a, b| taken(a).total_cmp(&taken(b))).filter(|rest| taken(rest) < worth)
 }
 
-/// Why there is no way.
+/// Reason why a motion is not possible.
 enum Obstructed {
-    /// It is too quick.
+    /// It is too fast.
     Quick,
-    /// However slow it is.
+    /// At every speed.
     Anyway,
 }
 
-/// There and back in `time` (s) each, if that keeps the limits.
+/// Both motions in `time` (s) each, if they keep the limits.
 fn trip(
     standstill: &Standstill<'_>,
     low: &Joints,
@@ -134,7 +132,7 @@ fn trip(
     Ok(Rest { out, wait_s, back, energy, energy_before_j })
 }
 
-/// A stream along the straight line between two poses that eases in and out.
+/// A stream along the straight joint-space line between two poses with smooth start and end.
 fn way(from: &Joints, to: &Joints, time: f64, spacing: f64) -> Option<Stream> {
     let n = ((time / spacing).floor() as usize).clamp(POINTS.0, POINTS.1);
     let eased = |x: f64| x * x * x * (10.0 - x * (15.0 - 6.0 * x));
@@ -156,7 +154,7 @@ mod tests {
     use super::*;
     use crate::arm::robot;
 
-    /// Rounding of the times of a rest, s.
+    /// Tolerance of times, s.
     const TIME: f64 = 1e-9;
 
     #[test]
@@ -182,7 +180,7 @@ mod tests {
             assert!((long.out.end()[j] - q[j]).abs() <= 0.5 + 1e-6);
             assert!((long.back.end()[j] - q[j]).abs() < 1e-6);
         }
-        // The longer the wait, the more it pays; a moment is not worth the way.
+        // A longer wait saves more; a short one saves less than the motions cost.
         let longer = rest(&standstill(120.0), 0.5, 0.05).unwrap();
         let saved = |rest: &Rest| rest.energy_before_j - rest.energy.energy_j();
         assert!(saved(&longer) > 1.5 * saved(&long), "{} {}", saved(&longer), saved(&long));

@@ -1,8 +1,7 @@
-//! A run of movements as a stream of least energy in a given time.
+//! Replaces a run of movements by a stream of least energy in a given time.
 //!
-//! The convex program on the path gives an intended motion; a stream is fitted
-//! to it and checked as the controller will realise it. What breaks a limit
-//! tightens the margins and is tried again.
+//! The convex program on the path gives a reference motion. A stream is fitted to it and its
+//! realised motion is checked. If a limit is exceeded, the next attempt has tighter margins.
 
 use super::attempt::{Attempt, Intended};
 use super::energy_program::{EnergyBound, energy_bound, minimize_energy};
@@ -19,7 +18,7 @@ use crate::retime::motion::stream::Stream;
 use crate::retime::motion::timed::TimedMotion;
 use crate::retime::path::joint_path::{DOF, Joints};
 
-/// The time of a run, settling included.
+/// The required time of a run, with settling.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
     /// Least energy in at most this time, s; only if it saves energy.
@@ -30,53 +29,53 @@ pub enum Goal {
     Fastest,
 }
 
-/// A stream that stands for a run.
+/// A stream that replaces a run.
 #[derive(Clone, Debug)]
 pub struct Retiming {
-    /// As emitted: its figures are rounded like the text.
+    /// The stream, rounded as in the emitted text.
     pub stream: Stream,
-    /// Energy of the run with it, settling included.
+    /// Energy of the run with the stream and settling.
     pub energy: EnergyParts,
-    /// Energy of the run as it was, J.
+    /// Energy of the original run, J.
     pub energy_before_j: f64,
-    /// Duration of the run with it, s.
+    /// Duration with the stream and settling, s.
     pub duration_s: f64,
-    /// No timing of the path takes less in this time, J, all six parts.
+    /// Lower bound of the energy on the path in this time, sum of all six parts, J.
     pub lower_bound_j: f64,
     /// Whether it keeps to the path.
     pub path: PathUse,
 }
 
-/// Whether a stream keeps to the path of its run.
+/// Whether a stream follows the path of its run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PathUse {
-    /// It keeps to it, within the tolerance.
+    /// It stays within the tolerance.
     Kept,
-    /// It keeps to it for this reason, although it was free.
+    /// It stays within the tolerance for this reason, although it was free.
     KeptFor(Reason),
-    /// It leaves it, as far as it is free.
+    /// It leaves the path within its freedom.
     Left,
 }
 
-/// Attempts with tighter margins.
+/// Largest number of attempts with tighter margins.
 const ATTEMPTS: usize = 8;
-/// Rounding between two integrations of the same energy, relative.
+/// Relative difference between two integrations of the same energy.
 const BOUND_ROUNDING: f64 = 1e-5;
-/// Share of a limit beyond which an attempt is begun anew instead of polished on.
+/// Share of a limit beyond which the next attempt starts from the program instead of polishing.
 const NEARLY: f64 = 2.0;
-/// Smallest saving that is worth a stream, share of the motion energy.
+/// Smallest saving that is worth a stream, as a share of the motion energy.
 const WORTHWHILE: f64 = 1e-3;
-/// Share of the energy that more polishing may still be expected to save.
+/// Largest share of the energy that further polishing may still save.
 const HOPELESS: f64 = 0.05;
-/// Where a motion is slow, the ramp time is a short step: at least this share of its time.
+/// Smallest search step for slow motions, as a share of their duration.
 const SLOW_STEP: f64 = 0.02;
-/// Steps of the search for the time of the fastest stream, share of the ramp time.
+/// Time added to the fastest profile in the search for the fastest stream, in ramp times.
 const RAMP_SHARES: [f64; 8] = [0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.3, 1.8];
 
 /// The stream of a run.
 ///
 /// # Errors
-/// The reason why the run stays as it is.
+/// The reason why the run stays unchanged.
 pub fn retime(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
     let mut moves = task.run.moves.iter();
     if !moves.any(|record| task.freedom.free_deviation(&record.movement) > 0.0) {
@@ -112,7 +111,7 @@ pub fn retime(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
 }
 
 /// Lower bound of the energy of any motion between the ends of a run in this time (s), J: potential
-/// energy, dry friction over the distance, and viscous friction at constant speed.
+/// energy, Coulomb friction over the distance and viscous friction at constant speed.
 fn free_bound(task: &Task<'_>, time: f64) -> f64 {
     let Task { model, run, .. } = task;
     let height = |q: &Joints| potential_energy(model, &run.load, q);
@@ -146,7 +145,7 @@ fn on_path(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
     }
 }
 
-/// The least time of a run as a stream, s; `None` where there is no stream.
+/// The least time of a run as a stream, s; `None` if no stream exists.
 pub fn fastest(task: &Task<'_>) -> Option<f64> {
     RunProblem::new(task).ok()?.least_time().ok().map(|retiming| retiming.duration_s)
 }
@@ -155,7 +154,7 @@ pub fn fastest(task: &Task<'_>) -> Option<f64> {
 pub const SLOWEST: f64 = 10.0;
 
 impl RunProblem<'_> {
-    /// Least energy in a time, settling included, if it is below `worth` (J, motion).
+    /// Least energy in a time (s, with settling), if the motion energy is below `worth` (J).
     fn least_energy(&self, time: f64, worth: f64) -> Result<Retiming, Reason> {
         let budget = round_down(time - self.task.run.settling);
         let bound = self.bound(budget);
@@ -182,7 +181,7 @@ impl RunProblem<'_> {
                     return if saves { Ok(retiming) } else { Err(Reason::NoSaving) };
                 }
                 Ok(attempt) => {
-                    // Tighter margins do not lower the energy; more polishing lowers it a little.
+                    // Tighter margins do not lower the energy; polishing lowers it slightly.
                     let energy = self.moving(&attempt.stream).motion_energy_j();
                     if energy - HOPELESS * energy.abs() >= worth {
                         return Err(Reason::NoSaving);
@@ -190,7 +189,7 @@ impl RunProblem<'_> {
                     problem = Some(attempt.check.fault());
                     let share = margins.worst(&attempt.check);
                     if share < worst {
-                        // The polygon is asked for from now on.
+                        // From now on polishing also limits the polygon.
                         let is_new = margins.edges.is_infinite() && attempt.check.polygon > 1.0;
                         worst = if is_new { f64::INFINITY } else { share };
                         margins.tighten_a_little(&attempt.check);
@@ -210,7 +209,7 @@ impl RunProblem<'_> {
         Err(if is_tight { Reason::NoSaving } else { Reason::NoStream(problem.unwrap_or_default()) })
     }
 
-    /// The convex program's answer and a stream fitted to it.
+    /// The solution of the convex program and a stream fitted to it.
     fn least_energy_program(
         &self,
         budget: f64,
@@ -220,7 +219,7 @@ impl RunProblem<'_> {
         let (mut grid, limits) = self.grid(margins)?;
         let mut fast = fastest_profile(&grid, &limits)?;
         if fast.duration() > budget {
-            // The time is too short for a shaped motion; the polishing has to shape it.
+            // The grid without shaping permits a shorter time; polishing has to shape the motion.
             (grid, _) = self.bare_grid(margins)?;
             fast = fastest_profile(&grid, &limits)?;
         }
@@ -232,14 +231,14 @@ impl RunProblem<'_> {
         self.intend(&optimum.profile, budget, margins)
     }
 
-    /// A bound on the motion energy of the path in this time at the full limits.
+    /// Lower bound of the motion energy on the path in this time at the full limits.
     fn bound(&self, budget: f64) -> Option<EnergyBound> {
         let (grid, limits) = self.bare_grid(&Margins::none()).ok()?;
         let fast = fastest_profile(&grid, &limits).ok()?;
         energy_bound(&grid, &limits, &self.electrical, &fast, budget)
     }
 
-    /// Least time: the fastest profile, lengthened as far as the jerk limit needs.
+    /// Least time: the fastest profile, lengthened until it keeps the jerk limit.
     fn least_time(&self) -> Result<Retiming, Reason> {
         let mut margins = Margins { edges: FIRST_DISTANCE, ..Margins::first(self.tolerance()) };
         let ramp = self.task.model.controller.ramp_s.unwrap_or(0.1);
@@ -271,7 +270,7 @@ impl RunProblem<'_> {
         Err(problem.unwrap_or_else(|| Reason::NoStream(String::new())))
     }
 
-    /// The fastest stream, slowed to the given time, where no better stream was found.
+    /// The fastest stream, slowed to the given time.
     fn within(&self, time: f64) -> Result<Retiming, Reason> {
         let retiming = self.least_time()?;
         if retiming.duration_s > time + quantum() {
@@ -282,7 +281,7 @@ impl RunProblem<'_> {
         Ok(better.unwrap_or(retiming))
     }
 
-    /// The same where no attempt at a stream of its own held; else the reason for that.
+    /// The same after failed attempts at a stream; other reasons are returned.
     fn instead(&self, reason: Reason, time: f64) -> Result<Retiming, Reason> {
         match reason {
             Reason::NoStream(_) => self.within(time).or(Err(reason)),
@@ -290,8 +289,8 @@ impl RunProblem<'_> {
         }
     }
 
-    /// A stream with all its intervals lengthened, if it still holds: friction and weight do not fall
-    /// with the speed.
+    /// A stream with lengthened intervals, if it keeps the limits: friction and gravity torques do
+    /// not fall with the speed.
     fn slowed(&self, stream: &Stream, duration: f64) -> Option<Retiming> {
         let longer = duration / stream.duration();
         let intervals: Vec<f64> = stream.intervals().iter().map(|x| x * longer).collect();
@@ -302,7 +301,7 @@ impl RunProblem<'_> {
         holds.then(|| self.retiming(slow, bound))
     }
 
-    /// Energy of a stream's motion, settling not included.
+    /// Energy of the motion of a stream without settling.
     fn moving(&self, stream: &Stream) -> EnergyParts {
         let motion = TimedMotion::Stream(stream.clone());
         motion_energy(self.task.model, &self.task.run.load, &motion, 0.0, stream.duration())
@@ -316,8 +315,8 @@ impl RunProblem<'_> {
             + account::base(task.model, duration)
             + account::at_rest(task.model, &task.run.load, &task.run.end, task.run.settling);
         let idle = energy.energy_j() - energy.motion_energy_j();
-        // The realised motion may cut a corner within the tolerance and so pass below the bound of
-        // the path itself: then the bound says no more than that.
+        // The realised motion may cut corners within the tolerance and fall below the bound of the
+        // path: then the bound is lowered to its energy.
         let achieved = moving.motion_energy_j();
         let bound =
             bound.unwrap_or(f64::NEG_INFINITY).min(achieved - BOUND_ROUNDING * achieved.abs());

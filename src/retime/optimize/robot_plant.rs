@@ -1,22 +1,21 @@
-//! The torques of a robot as the optimiser of a stream takes them: without dry friction, which
-//! jumps where a joint turns, and with their derivatives.
+//! Robot torques for stream optimisation with their derivatives, without Coulomb friction, which
+//! jumps at a reversal.
 
 use super::plant::direction;
 use crate::arm::dynamics::{Data, JointMatrix, Load, friction, rnea_derivatives, torque};
 use crate::arm::robot::Model;
 use crate::retime::motion::stream::{DOF, Joints};
 
-/// Step of the differences of friction in the speed, away from where it jumps, rad/s.
+/// Step of the friction differences in the speed, directed away from the jump, rad/s.
 const STEP: f64 = 1e-4;
 
-/// Torques without the Coulomb friction of the robot's file, Nm: rigid bodies, rotors and the
-/// other laws of friction.
+/// Torques without Coulomb friction, Nm: rigid bodies, rotors and the other friction laws.
 pub fn smooth_torque(model: &Model, load: &Load, q: &Joints, qd: &Joints, qdd: &Joints) -> Joints {
     let torque = torque(model, &mut Data::new(), load, q, qd, qdd);
     std::array::from_fn(|j| torque.rigid[j] + torque.friction[j] - dry(model, qd, j))
 }
 
-/// The change of [`smooth_torque`] per change of q, q̇ and q̈: `[kind][joint that changes][torque]`.
+/// Derivatives of [`smooth_torque`] by q, q̇ and q̈: `[kind][joint that changes][torque]`.
 pub fn smooth_torque_derivatives(
     model: &Model,
     load: &Load,
@@ -58,7 +57,7 @@ mod tests {
     use super::*;
     use crate::arm::robot::{find, from_toml};
 
-    /// Of differences of second order, over the largest torque.
+    /// Relative tolerance of second-order differences.
     const DIFFERENCES: f64 = 1e-6;
 
     #[test]

@@ -1,4 +1,4 @@
-//! A run's robot as the polishing of a stream sees it.
+//! The robot of a run as a [`Plant`] for stream polishing.
 
 use super::keep_out;
 use super::margins::Margins;
@@ -9,15 +9,14 @@ use crate::arm::kinematics::fk;
 use crate::retime::motion::stream::Piece;
 use crate::retime::path::joint_path::{DOF, Joints};
 
-/// Longest way of the TCP between two places at which a motion is judged, m: the ceilings of its
-/// speed have steps.
+/// Longest TCP distance between two samples of a motion, m: the speed ceilings have steps.
 pub(super) const LONGEST_STEP: f64 = 0.004;
 
-/// The robot with its load, as the polishing of a stream sees it.
+/// The loaded robot with the margins of an attempt.
 pub(super) struct RunPlant<'a> {
     pub(super) problem: &'a RunProblem<'a>,
     pub(super) margins: &'a Margins,
-    /// TCP speed at the places of the corridor, m/s.
+    /// TCP speed ceilings at the places of the corridor, m/s.
     pub(super) ceilings: Vec<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! A run on its path with what bounds a stream in its place, and the timing problem on a grid.
+//! A run on its path with the limits of its stream, and the timing problem on a grid.
 
 use super::allowed::Loads;
 use super::ceilings::{Ceiling, speeds};
@@ -26,33 +26,33 @@ use crate::retime::motion::timing::reachability::time_optimal;
 use crate::retime::path::LegKind;
 use crate::retime::path::joint_path::{JointPath, Joints};
 
-/// Intervals of the grid besides those of zones.
+/// Grid intervals in addition to those of zones.
 const INTERVALS: usize = 44;
-/// Time over which the points of a stream smooth its speed to either side, s.
+/// Time by which the points of a stream smooth its speed to each side, s.
 const SHAPING_TIME: f64 = 0.04;
-/// Distance from the path that costs the polishing a share of the energy, in tolerances of it.
+/// Distance from the path with a noticeable cost in polishing, as a share of the tolerance.
 const CORRIDOR: f64 = 0.3;
 
-/// A run to be timed anew.
+/// A run to be replaced by a stream.
 #[derive(Clone, Copy)]
 pub struct Task<'a> {
     /// The robot.
     pub model: &'a Model,
-    /// The run as the controller executes it.
+    /// The simulated run.
     pub run: &'a Run,
     /// Its energy.
     pub energy_before: EnergyParts,
     /// Least time between two points, s.
     pub spacing_s: f64,
-    /// The same where the polygon of the points would otherwise be too far from the path, s.
+    /// The same where a wider spacing moves the polygon too far from the path, s.
     pub closest_s: f64,
-    /// Freedoms of the stream beyond the run.
+    /// What the stream may change relative to the run.
     pub freedom: &'a Freedom,
     /// The cost that is minimised.
     pub cost: Cost,
 }
 
-/// A run with its path, its corridor and the limits and cost of a stream in its place.
+/// A run with its path, corridor, limits and cost.
 pub(super) struct RunProblem<'a> {
     pub(super) task: &'a Task<'a>,
     pub(super) path: &'a JointPath,
@@ -82,7 +82,7 @@ impl<'a> RunProblem<'a> {
         Ok(RunProblem { task, path, corridor, body, limits, electrical, model, lever })
     }
 
-    /// Check of a stream as the controller will realise it.
+    /// Checks the realised motion of a stream.
     pub(super) fn check(&self, stream: &Stream) -> Check {
         let Task { model, run, .. } = self.task;
         let tool = &run.legs[0].tool;
@@ -90,7 +90,7 @@ impl<'a> RunProblem<'a> {
         check(model, &run.load, tool, stream, room, self.body.as_ref())
     }
 
-    /// Distance from the path that the polishing does not penalise noticeably, m.
+    /// Distance from the path without a noticeable cost in polishing, m.
     pub(super) fn looseness(&self) -> f64 {
         let moves = self.task.run.moves.iter();
         let free = moves
@@ -106,12 +106,12 @@ impl<'a> RunProblem<'a> {
         if line { LINE_TOLERANCE } else { JOINT_TOLERANCE }
     }
 
-    /// The problem on the path, shaped so that a stream can follow its solution.
+    /// The timing problem on the path, smoothed so that a stream can follow its solution.
     pub(super) fn grid(&self, margins: &Margins) -> Result<(PathGrid, PathLimits), Reason> {
         self.grid_of(margins, INTERVALS)
     }
 
-    /// The same with so many intervals besides those of zones.
+    /// The same with this number of intervals in addition to those of zones.
     pub(super) fn grid_of(
         &self,
         margins: &Margins,

@@ -1,9 +1,8 @@
-//! Sites: the places of a program where a stream can stand for movements.
+//! Sites: the places of a program where a stream can replace movements.
 //!
-//! A site is a sequence of neighbouring statements of one statement list that
-//! ran, at least once, from one stop point to the next. Each different way in
-//! which it ran (another start, other values of loop variables or parameters)
-//! is a variant.
+//! A site is a sequence of neighbouring statements of one list that the simulation executed from
+//! one stop point to the next. Each distinct execution (another start, other values of loop
+//! variables or parameters) is a variant.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -22,33 +21,33 @@ use crate::retime::path::joint_path::{DOF, JointPath, Joints, PieceKind};
 /// A place of the program with its variants.
 #[derive(Debug)]
 pub struct Site {
-    /// From the first statement to the last.
+    /// From the first statement to the last one.
     pub span: Span,
     /// The distinct variants.
     pub variants: Vec<Variant>,
-    /// Why the whole site stays, if it does.
+    /// Why the whole site stays unchanged, if it does.
     pub reason: Option<Reason>,
-    /// Its movements.
+    /// The statements of its movements.
     statements: BTreeSet<Span>,
 }
 
-/// One way in which a site was executed.
+/// One distinct execution of a site.
 #[derive(Debug)]
 pub struct Variant {
-    /// Indices of the simulation's events in which it ran so.
+    /// Indices of its events in the simulation.
     pub events: Vec<usize>,
-    /// The arguments of its movements, each place of the text once.
+    /// The distinct arguments of its movements.
     pub arguments: Vec<Argument>,
-    /// Why it stays, if it does.
+    /// Why it stays unchanged, if it does.
     pub reason: Option<Reason>,
 }
 
-/// Ways of one site beyond which none is rewritten.
+/// Largest number of variants of a site that is rewritten.
 const MAX_VARIANTS: usize = 64;
-/// Joints closer than this are the same start, rad.
+/// Joint angles closer than this are equal, rad.
 const SAME_START: f64 = 1e-6;
 
-/// The sites of a simulated program, in the order of the source.
+/// The sites of a simulated program in source order.
 pub fn sites(program: &Program, simulation: &Simulation) -> Vec<Site> {
     let places = Places::new(program);
     let mut sites: BTreeMap<(Span, Span), Site> = BTreeMap::new();
@@ -100,7 +99,7 @@ pub fn sites(program: &Program, simulation: &Simulation) -> Vec<Site> {
     sites
 }
 
-/// Whether an output is set while the movements of a run are under way.
+/// Whether an output is set during the movements of a run.
 fn sets_on_the_way(simulation: &Simulation, run: usize) -> bool {
     let before = simulation.events[..run].iter().rev();
     before
@@ -111,8 +110,8 @@ fn sets_on_the_way(simulation: &Simulation, run: usize) -> bool {
         .any(|under_way| under_way > 0)
 }
 
-/// The runs that are one run where the program begins again: its last movement flies on into the
-/// first one of the loop that never ends.
+/// The last run and the first run of the repetition, if the last movement ends in a fly-by point
+/// and both are one run when the program repeats.
 fn joined_by_repetition(simulation: &Simulation) -> Vec<usize> {
     let events = || simulation.events.iter().enumerate();
     let runs = || events().filter(|(_, event)| matches!(event.what, What::Run(_)));
@@ -130,7 +129,7 @@ fn joined_by_repetition(simulation: &Simulation) -> Vec<usize> {
     std::iter::once(last).chain(first).collect()
 }
 
-/// Marks sites that share a statement: they cannot both be replaced.
+/// Marks sites that share a statement: only one of them could be replaced.
 fn mark_overlaps(sites: &mut [Site]) {
     let mut users: BTreeMap<Span, usize> = BTreeMap::new();
     for statement in sites.iter().flat_map(|site| &site.statements) {
@@ -199,8 +198,7 @@ fn eligibility(run: &Run, first: bool) -> Result<(), Reason> {
     }
 }
 
-/// Whether joints turn so fast along a line or arc, rad per m, that small errors of the model
-/// would count.
+/// Whether joints move so fast along a line or arc (rad per m) that small model errors matter.
 fn passes_singularity(path: &JointPath) -> bool {
     const NEAR_SINGULAR: f64 = 30.0;
     path.pieces().iter().any(|piece| {
@@ -234,8 +232,8 @@ fn movement_is_eligible(movement: &Movement) -> Result<(), Reason> {
     }
 }
 
-/// Why the arguments of a movement may be others at the next run, if they may: what stands for it
-/// without a condition would be wrong then.
+/// Why the arguments of a movement may change until the next run, if they may; an unconditional
+/// replacement would then be wrong.
 pub fn not_constant(movement: &Movement) -> Option<Reason> {
     let what = |dependence: &Dependence| match dependence {
         Dependence::Local(_) | Dependence::TrustedPersistent(_) => None,
@@ -286,10 +284,10 @@ fn settings_allow(settings: &Settings) -> Result<(), Reason> {
     }
 }
 
-/// Where each statement stands: its list and its place in it.
+/// Statement list and index of each statement.
 struct Places {
     by_span: BTreeMap<Span, (usize, usize)>,
-    /// The statements that wait for a time, and so let the robot stop.
+    /// Statements that wait for a time, at which the robot stops.
     stops: BTreeSet<(usize, usize)>,
     /// Statements of compact IFs.
     compact: BTreeSet<Span>,
@@ -319,7 +317,7 @@ impl Places {
                 self.stops.insert((list, index));
             }
             for inner in stmt.kind.blocks() {
-                // A compact IF ends with its statement, the long form with ENDIF after it.
+                // A compact IF ends with its statement; the block form ends with ENDIF.
                 if let Some(last) = inner.last()
                     && last.span.end == stmt.span.end
                 {
@@ -330,8 +328,8 @@ impl Places {
         }
     }
 
-    /// Whether a run ends in a zone and no wait behind it makes the robot stop: in another branch, or
-    /// where an input is on already, the robot goes on without a stop.
+    /// Whether a run ends in a fly-by point without a timed wait after it. A wait for an input that
+    /// is already set, or another branch, does not stop the robot.
     fn flies_on(&self, run: &Run) -> bool {
         let Some(last) = run.moves.last().filter(|record| !record.movement.zone.fine) else {
             return false;
@@ -340,7 +338,7 @@ impl Places {
         place.is_none_or(|(list, index)| !self.stops.contains(&(*list, index + 1)))
     }
 
-    /// Whether the statements of a run follow each other in one list.
+    /// Whether the statements of a run are consecutive in one list.
     fn neighbours(&self, run: &Run) -> Result<(), Reason> {
         if run.moves.iter().any(|record| self.compact.contains(&record.movement.span)) {
             return Err(Reason::CompactIf);
@@ -359,7 +357,7 @@ impl Places {
     }
 }
 
-/// Whether a statement waits for a time that is not 0.
+/// Whether a statement waits for a time other than 0.
 fn is_wait(stmt: &Stmt) -> bool {
     let StmtKind::Call(call) = &stmt.kind else { return false };
     let is_zero = |arg: &Arg| matches!(&arg.kind, ArgKind::Positional(Expr { kind: ExprKind::Num(x), .. }) if *x == 0.0);
@@ -367,7 +365,7 @@ fn is_wait(stmt: &Stmt) -> bool {
         && !call.args.iter().any(is_zero)
 }
 
-/// The movement statements of a program that did not run in a simulation.
+/// The movement statements that a simulation did not execute.
 pub fn not_reached(program: &Program, simulation: &Simulation) -> Vec<Span> {
     let mut ran: BTreeSet<Span> = BTreeSet::new();
     for event in &simulation.events {

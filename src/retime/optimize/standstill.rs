@@ -1,9 +1,8 @@
-//! Standing still: the holding power of a pose, and the nearby pose of least holding power.
+//! Holding power of a pose and the nearby pose of least holding power.
 //!
-//! Paes et al. 2014, table 3 and figure 7. Holding power is cheap to evaluate and has
-//! several minima: the search looks at poses over the whole box and at its corners, and
-//! descends from the cheapest of them (R. Hooke, T. A. Jeeves, "Direct search solution of
-//! numerical and statistical problems", J. ACM 8, 1961).
+//! Paes et al. 2014, table 3 and figure 7. Holding power has several minima: the search samples
+//! the whole box and its corners and descends from the best samples (R. Hooke, T. A. Jeeves,
+//! "Direct search solution of numerical and statistical problems", J. ACM 8, 1961).
 
 use crate::arm::dynamics::Load;
 use crate::arm::effects::drawn;
@@ -14,30 +13,30 @@ use crate::retime::energy::plausible::{Contribution, Interval, Robots};
 use crate::retime::energy::power::holding_w;
 use crate::retime::path::joint_path::{DOF, Joints};
 
-/// Positions of each joint at which the search starts, as shares of the distance;
-/// staying comes first, so that it wins among equals.
+/// Start positions of each joint, as shares of the distance; 0 comes first, so that it is chosen
+/// among equals.
 const SHARES: [f64; 3] = [0.0, -1.0, 1.0];
-/// Further poses, spread evenly over the box.
+/// Further start poses, spread evenly over the box.
 const SPREAD: u32 = 1024;
-/// Bases of that spread, one for each joint.
+/// Bases of the quasi-random spread, one per joint.
 const BASES: [u32; DOF] = [2, 3, 5, 7, 11, 13];
-/// Poses from which the search descends.
+/// Number of descents.
 const STARTS: usize = 32;
-/// The search ends at steps below this share of the distance.
+/// Smallest step, as a share of the distance.
 const FINEST: f64 = 1e-4;
-/// A pose is better by at least this much \[W\].
+/// Smallest improvement, W.
 const BETTER: f64 = 1e-6;
 
 /// A robot at rest.
 #[derive(Clone, Debug)]
 pub struct Standing {
-    /// Where, rad.
+    /// Joint angles, rad.
     pub q: Joints,
-    /// Holding power by joint, W.
+    /// Holding power per joint, W.
     pub per_joint_w: Joints,
-    /// Break-even time of the brakes, s; `None` where nothing is saved or no brake is known.
+    /// Break-even time of the brakes, s; `None` if nothing is saved or no brake is known.
     pub break_even_s: Option<f64>,
-    /// The pose of least holding power nearby, rad.
+    /// The nearby pose of least holding power, rad.
     pub best: Joints,
     /// Its holding power, W.
     pub best_w: f64,
@@ -50,20 +49,20 @@ pub struct Standing {
 pub struct Range {
     /// Holding power \[W\].
     pub holding_w: Interval,
-    /// Break-even time \[s\]; `None` where in some robot nothing is spared.
+    /// Break-even time \[s\]; `None` if brakes save nothing for some robot.
     pub break_even_s: Option<Interval>,
-    /// What the variance of that time comes from, or else that of the holding power.
+    /// Contributions to the variance of that time, or of the holding power if there is none.
     pub contributions: Vec<Contribution>,
 }
 
-/// Robots as plausible as a model, with the model of each.
+/// Draws of plausible robots for a model.
 pub struct Plausible {
     robots: Robots,
     models: Vec<Model>,
 }
 
 impl Plausible {
-    /// Draws for a model; `None` where all parameters are known, or an effect makes a draw invalid.
+    /// The draws; `None` if all parameters are known or an effect makes a draw invalid.
     pub fn new(model: &Model) -> Option<Plausible> {
         let robots = Robots::new(model)?;
         let models: Result<Vec<Model>, _> =
@@ -90,8 +89,8 @@ impl Standing {
     }
 }
 
-/// A loaded robot at rest at `q`, and the best pose inside the position limits that
-/// no joint is more than `distance` \[rad\] away from; over plausible robots where they are given.
+/// A loaded robot at rest at `q`, and the best pose within the position limits and within
+/// `distance` \[rad\] in each joint; with intervals over plausible robots if given.
 pub fn standing(
     model: &Model,
     plausible: Option<&Plausible>,
@@ -115,7 +114,7 @@ fn total(model: &Model, load: &Load, q: &Joints) -> f64 {
     holding_w(model, load, q).iter().sum()
 }
 
-/// The box of the search: no joint farther than `distance` \[rad\] from `from`, nor outside its range.
+/// The search box: each joint within `distance` \[rad\] of `from` and within its range.
 struct Search<'a> {
     model: &'a Model,
     load: &'a Load,
@@ -128,7 +127,7 @@ impl Search<'_> {
         total(self.model, self.load, at)
     }
 
-    /// The pose with each joint, from the base on, moved into where it may be.
+    /// The pose with each joint, from the base on, clamped into the box.
     fn inside(&self, mut at: Joints) -> Joints {
         for joint in 0..DOF {
             let [low, high] = self.model.limits.position_at(&at, joint);
@@ -138,7 +137,7 @@ impl Search<'_> {
         at
     }
 
-    /// Poses over the whole box, the cheapest first, one of each power.
+    /// Poses over the whole box, sorted by power, without equal powers.
     fn starts(&self) -> Vec<(Joints, f64)> {
         let grid = (0..SHARES.len().pow(DOF as u32)).map(|combination| {
             let mut rest = combination;
@@ -161,13 +160,13 @@ impl Search<'_> {
             .map(|at| (at, self.power(&at)))
             .collect();
         starts.sort_by(|a, b| a.1.total_cmp(&b.1));
-        // Poses of the same power differ only in axes that carry nothing.
+        // Poses of equal power differ only in unloaded axes.
         starts.dedup_by(|later, kept| later.1 - kept.1 < BETTER);
         starts.truncate(STARTS);
         starts
     }
 
-    /// Exploratory moves: each joint by a step to either side, where that lowers the power.
+    /// Exploratory moves: each joint by a step to either side, if that lowers the power.
     fn explored(&self, from: (Joints, f64), step: f64) -> (Joints, f64) {
         let mut best = from;
         for joint in 0..DOF {
@@ -188,7 +187,7 @@ impl Search<'_> {
         }
     }
 
-    /// The minimum that a start leads to.
+    /// The local minimum reached from a start.
     fn descended(&self, start: (Joints, f64)) -> (Joints, f64) {
         let mut best = start;
         let mut step = 0.25 * self.distance;
@@ -198,7 +197,7 @@ impl Search<'_> {
                 step *= 0.5;
                 continue;
             }
-            // Pattern moves, as long as they lower the power.
+            // Pattern moves while they lower the power.
             let (mut before, mut here) = (best, found);
             while here.1 < before.1 {
                 let ahead = std::array::from_fn(|j| 2.0 * here.0[j] - before.0[j]);
@@ -224,7 +223,7 @@ fn best_nearby(model: &Model, load: &Load, q: &Joints, distance: f64) -> Joints 
             best = found;
         }
     }
-    // Joints whose motion saves nothing go back.
+    // Joints without an effect on the power return to their start.
     for joint in 0..DOF {
         let mut at = best.0;
         at[joint] = q[joint];
@@ -242,7 +241,7 @@ mod tests {
     use super::*;
     use crate::arm::robot::find;
 
-    /// What many more descents may find \[W\].
+    /// Largest improvement that further descents may find \[W\].
     const MISSED_W: f64 = 0.01;
 
     #[test]

@@ -1,11 +1,10 @@
-//! The stream whose realised motion follows an intended one within all joint limits.
+//! Fits a stream to a reference motion within all joint limits.
 //!
 //! With fixed intervals the realised motion is linear in the points, so the fit is a quadratic
-//! program. First the weighted least squares without limits, a band matrix; where that breaks a
-//! limit, the nearest points (in the same weights) that keep the limits, which needs only the
-//! rows that come near their bound.
+//! program. First the weighted least squares without limits, a banded system. If it exceeds a
+//! limit, the nearest feasible points in the same metric; only rows near their bound are included.
 //!
-//! An error along the path is only an error of timing and weighs less than one across it.
+//! An error along the path is an error of timing and has less weight than one across it.
 
 use super::banded::Banded;
 use super::cone::{Affine, ConeProgram, ConeStatus};
@@ -14,48 +13,48 @@ use super::stream_points::Points;
 use super::stream_reference::Reference;
 use crate::retime::motion::stream::{Joints, Stream, StreamError};
 
-/// How the fit ended.
+/// Outcome of the fit.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StreamFit {
-    /// The stream, verified against the limits.
+    /// The stream, checked against the limits.
     Fitted(FittedStream),
     /// The limits cannot be kept in this time.
     TooFast {
-        /// Factor on the time at which the fit without limits keeps them: an upper bound.
+        /// Time factor at which the fit without limits keeps them: an upper bound.
         stretch: f64,
     },
-    /// The solver broke off or its answer did not verify.
+    /// The solver stopped, or its solution failed the check.
     Failed,
 }
 
-/// A stream and how far its realised motion is from the intended one.
+/// A stream and the error of its realised motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FittedStream {
     /// The stream.
     pub stream: Stream,
-    /// Largest distance from the path, in the units of the levers.
+    /// Largest distance from the path, in lever units.
     pub deviation: f64,
-    /// Largest error along the path, in the units of the levers.
+    /// Largest error along the path, in lever units.
     pub lag: f64,
 }
 
-/// Samples per interval at which the error counts.
+/// Error samples per interval.
 const SAMPLES: usize = 6;
-/// Weight of the squared error along the path; 1 away from it.
+/// Weight of the squared error along the path; across it the weight is 1.
 const ALONG: f64 = 0.02;
-/// Time by which the error of the velocity is weighed against that of the position, s.
+/// Weight of velocity errors relative to position errors, s.
 const HORIZON: f64 = 0.01;
-/// Room that the program keeps to the limits.
+/// Margin of the program to the limits.
 const MARGIN: f64 = 1e-3;
-/// Share of its limit from which a row is part of the program.
+/// Share of its limit from which a row is in the program.
 const NEAR: f64 = 0.9;
-/// Rounds in which rows are added.
+/// Largest number of solves with added rows.
 const MAX_ROUNDS: usize = 10;
 /// Unit of the program's variables, rad.
 const UNIT: f64 = 1e-3;
 
 /// Fits a stream with the given intervals (s) to `reference`, which is stretched to their sum.
-/// `lever` weighs the joints (1 for radians, the distance to the tool for metres).
+/// `lever` is the weight of each joint (1 for radians, the distance to the TCP for metres).
 ///
 /// # Errors
 /// Intervals that are not positive finite times.
@@ -130,21 +129,21 @@ struct Fit<'a> {
 }
 
 impl Fit<'_> {
-    /// The intended motion at the stream's time t.
+    /// The reference motion at time t of the stream.
     fn intended(&self, t: f64) -> (Joints, Joints) {
         let stretch = self.reference.duration() / self.points.knots.duration();
         let (q, qd) = self.reference.at(t * stretch);
         (q, qd.map(|v| v * stretch))
     }
 
-    /// The direction of the path in the moving joints, of length one; zero at rest.
+    /// Unit vector of the path direction in the moving joints; zero at rest.
     fn direction(&self, qd: &Joints) -> Vec<f64> {
         let along: Vec<f64> = self.points.joints.iter().map(|j| self.lever[*j] * qd[*j]).collect();
         let norm = along.iter().map(|x| x * x).sum::<f64>().sqrt();
         along.iter().map(|x| if norm > 0.0 { x / norm } else { 0.0 }).collect()
     }
 
-    /// The times of the error samples with their weights.
+    /// The error samples: piece, time in it (s) and weight (s).
     fn samples(&self) -> impl Iterator<Item = (usize, f64, f64)> + '_ {
         (0..=self.points.knots.points()).flat_map(move |piece| {
             let step = self.points.knots.piece_length(piece) / SAMPLES as f64;
@@ -152,8 +151,7 @@ impl Fit<'_> {
         })
     }
 
-    /// The matrix and right side of the least squares in the variables (rad), with a mean error
-    /// of `UNIT` as one.
+    /// Matrix and right-hand side of the least squares in the variables (rad).
     fn normal_equations(&self) -> (Banded, Vec<f64>) {
         let moving = self.points.joints.len();
         let size = self.points.size();
@@ -168,7 +166,7 @@ impl Fit<'_> {
                 (&weights.position, &q, scale),
                 (&weights.velocity, &qd, scale * HORIZON * HORIZON),
             ] {
-                // e = Σ basis · P − target; fixed points go to the other side.
+                // e = Σ basis · P − target; fixed points are moved to the target.
                 let mut wanted: Vec<f64> = self.points.joints.iter().map(|j| target[*j]).collect();
                 for (i, w) in weights.support.clone().zip(basis) {
                     for (m, wanted) in wanted.iter_mut().enumerate() {

@@ -2,7 +2,7 @@
 
 use crate::retime::motion::stream::{DOF, Joints, Stream};
 
-/// Largest |q̇|, |q̈| and jerk of each joint in the realised motion; infinite for none.
+/// Largest |q̇|, |q̈| and jerk of each joint in the realised motion; infinite without a limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StreamLimits {
     /// rad/s.
@@ -14,7 +14,7 @@ pub struct StreamLimits {
 }
 
 impl StreamLimits {
-    /// The largest share of a limit that the stream uses.
+    /// The largest used share of a limit.
     pub fn worst_ratio(&self, stream: &Stream) -> f64 {
         let pairs = [
             (stream.max_velocity(), &self.velocity),
@@ -25,7 +25,7 @@ impl StreamLimits {
         shares.fold(0.0, f64::max)
     }
 
-    /// Factor on the time at which the stream with the same points keeps the limits, at least 1.
+    /// Time factor, at least 1, at which the stream with the same points keeps the limits.
     pub fn stretch(&self, stream: &Stream) -> f64 {
         let pairs = [
             (stream.max_velocity(), self.velocity, 1.0),

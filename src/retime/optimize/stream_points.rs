@@ -1,13 +1,13 @@
 //! The points of a stream as variables of a program.
 //!
-//! Variables are the inner points P₁…Pₙ₋₁ in the joints that move, point by point: the ends are
-//! given, and a joint that rests must rest exactly.
+//! Variables are the inner points P₁…Pₙ₋₁ of the moving joints, point by point. The ends are fixed,
+//! and a joint at rest keeps exactly its angle.
 
 use super::stream_limits::StreamLimits;
 use super::stream_reference::Reference;
 use crate::retime::motion::stream::{DOF, Joints, Knots, Stream, StreamError, Weights};
 
-/// One limit on one side: Σ weight · variable + constant ≤ 1.
+/// One side of a limit: Σ weight · variable + constant ≤ 1.
 pub(super) struct LimitRow {
     pub(super) terms: Vec<(usize, f64)>,
     constant: f64,
@@ -54,17 +54,17 @@ impl Points {
         (self.knots.points() - 1) * self.joints.len()
     }
 
-    /// Index of the variable of the control point i (0 is the start) in the moving joint m.
+    /// Index of the variable of control point i (0 is the start) in moving joint m.
     pub(super) fn variable(&self, i: usize, m: usize) -> Option<usize> {
         (i > 0 && i < self.knots.points()).then(|| (i - 1) * self.joints.len() + m)
     }
 
-    /// The value of a control point that is no variable, rad.
+    /// Value of a fixed control point, rad.
     pub(super) fn fixed(&self, i: usize, m: usize) -> f64 {
         (if i == 0 { &self.start } else { &self.end })[self.joints[m]]
     }
 
-    /// The variables of a stream with these knots and ends, rad.
+    /// The variables of a stream with the same knots and ends, rad.
     pub(super) fn variables(&self, stream: &Stream) -> Vec<f64> {
         let inner = &stream.points()[..self.knots.points() - 1];
         inner.iter().flat_map(|point| self.joints.iter().map(|j| point[*j])).collect()
@@ -120,7 +120,7 @@ impl Points {
         rows
     }
 
-    /// The stream with the given variables; joints that do not move stay exactly.
+    /// The stream with the given variables; joints at rest keep exactly their angle.
     pub(super) fn stream(&self, variables: &[f64]) -> Result<Stream, StreamError> {
         let n = self.knots.points();
         let mut points = vec![self.start; n];

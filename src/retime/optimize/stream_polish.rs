@@ -1,10 +1,10 @@
 //! Lowers the energy of the realised motion of a stream at fixed intervals, within all limits.
 //!
 //! Sequential quadratic programming on the points. The copper loss is a sum of squares of torques
-//! that are linearised in the points (Gauss–Newton). The loss of a power that is braked away is
-//! rounded where the power changes its sign. Joint limits are linear rows and hold exactly; torque
-//! and the limits of the path are linearised rows with slacks that are priced. A distance from the path
-//! is priced too: one of the tolerance costs the share `DEVIATION_PRICE` of the energy.
+//! that are linearised in the points (Gauss–Newton). The braking loss is smoothed where the power
+//! changes its sign. Joint limits are linear rows and hold exactly; torque and path limits are
+//! linearised rows with priced slacks. The distance from the path has a price: a distance equal to
+//! the tolerance costs the share `DEVIATION_PRICE` of the energy.
 
 use super::banded_program::{BandedProgram, Optimum, Row};
 use super::path_energy::EnergyModel;
@@ -15,7 +15,7 @@ use super::stream_points::LimitRow;
 use super::stream_reference::Reference;
 use crate::retime::motion::stream::{Stream, StreamError};
 
-/// How the polishing ended.
+/// Outcome of polishing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PolishStatus {
     /// No further step lowers the energy.
@@ -27,32 +27,31 @@ pub enum PolishStatus {
 /// A polished stream.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polished {
-    /// The stream, never worse than the given one in the sum of energy and priced violations.
+    /// The stream, never worse than the given one in energy plus priced violations.
     pub stream: Stream,
-    /// How the polishing ended.
+    /// Outcome of polishing.
     pub status: PolishStatus,
-    /// Cost of its motion and shares of the limits.
+    /// Cost of its motion and used shares of the limits.
     pub realised: Realised,
-    /// Largest distance of the realised motion from the path of the reference, in the units of
-    /// the levers.
+    /// Largest distance of the realised motion from the reference path, in lever units.
     pub deviation: f64,
 }
 
-/// Steps.
+/// Largest number of steps.
 const MAX_STEPS: usize = 80;
-/// Relative fall of the merit at which the steps end.
+/// Relative decrease of the merit at which the iteration ends.
 const CONVERGED: f64 = 3e-5;
-/// Gap of the programs: a step is accepted by its effect on the merit, so a rough solution suffices.
+/// Gap of the programs. A step is accepted by its effect on the merit, so low accuracy suffices.
 const ROUGH_GAP: f64 = 1e-5;
-/// Price of a step of one unit in every variable at first, in energies; and its bounds.
+/// Initial price of a step of one unit in every variable, in initial energies; and its bounds.
 const DAMPING: f64 = 1e-3;
 const DAMPING_RANGE: (f64, f64) = (1e-6, 1e2);
 /// Factor on the damping after a good or a bad step.
 const DAMPING_STEP: f64 = 5.0;
-/// Parts of a proposed step that are tried.
+/// Tried parts of a proposed step.
 const PARTS: [f64; 4] = [1.0, 0.4, 0.15, 0.05];
 
-/// Lowers the energy of `stream`, which starts and ends as `reference` and keeps `limits`.
+/// Lowers the energy of `stream`, which has the ends of `reference` and keeps `limits`.
 ///
 /// # Errors
 /// None for a valid stream; those of [`Stream::new`].
@@ -103,14 +102,14 @@ pub fn polish_stream(
     Ok(polish.polished(best, status))
 }
 
-/// A stream with its merit in energies of the first one.
+/// A stream with its merit in units of the initial energy.
 struct Candidate {
     stream: Stream,
     realised: Realised,
     merit: f64,
 }
 
-/// A proposed change of the variables (rad) and the fall of the merit that the program expects.
+/// A proposed change of the variables (rad) and the predicted decrease of the merit.
 struct Proposal {
     change: Vec<f64>,
     predicted: f64,
@@ -142,8 +141,8 @@ impl<P: Plant> Polish<'_, P> {
         self.problem.quadratic(&best.stream, best.realised.excess)
     }
 
-    /// Line search: the largest part of a step that lowers the merit, and the stream there. The joint
-    /// limits are convex: a part of a feasible step keeps them.
+    /// Line search: the largest part of a step that lowers the merit, and the stream there. Joint
+    /// limits are convex, so a part of a feasible step is feasible.
     fn along(
         &self,
         best: &Candidate,
@@ -163,7 +162,7 @@ impl<P: Plant> Polish<'_, P> {
         Ok(None)
     }
 
-    /// The change that the quadratic program around `best` proposes. None if there is none.
+    /// The step of the quadratic program around `best`. None if the solver fails.
     fn step(&self, best: &Candidate, model: &Quadratic, damping: f64) -> Option<Proposal> {
         let size = self.problem.points.size();
         let variables = self.problem.points.variables(&best.stream);
@@ -172,7 +171,7 @@ impl<P: Plant> Polish<'_, P> {
         for i in 0..size {
             matrix.add(i, i, price);
         }
-        // A row beyond its limit must not get worse.
+        // A row beyond its limit must not increase.
         let kept = self.rows.iter().filter(|row| !row.terms.is_empty()).map(|row| Row {
             terms: row.terms.iter().map(|(i, weight)| (*i, UNIT * weight)).collect(),
             bound: (1.0 - ROOM - row.value(&variables)).max(0.0),

@@ -1,11 +1,11 @@
-//! The intended motion of a stream, as dense samples over time.
+//! The reference motion of a stream as dense samples over time.
 
 use crate::retime::motion::stream::{DOF, Joints};
 
-/// Joint movement below which a joint rests, rad: less than the resolution of the emitted text.
+/// Displacement below which a joint is at rest, rad: less than the resolution of the emitted text.
 const ROUNDING: f64 = 5e-9;
 
-/// An intended joint motion, sampled so densely that cubic interpolation is exact enough.
+/// A reference joint motion, sampled densely enough for cubic interpolation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
     t: Vec<f64>,
@@ -13,7 +13,7 @@ pub struct Reference {
     qd: Vec<Joints>,
 }
 
-/// Why samples do not make a reference.
+/// Error in the samples of a reference.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ReferenceError {
     /// Fewer than two samples, or columns of different lengths.
@@ -49,7 +49,7 @@ impl Reference {
         Ok(Reference { t, q, qd })
     }
 
-    /// The motion over `duration` (s) as samples of `motion`, which gives (q, q̇) at a time.
+    /// Samples of `motion`, which returns (q, q̇) at a time, over `duration` (s).
     ///
     /// # Errors
     /// A duration that is not positive, no interval, values that are not finite.
@@ -63,27 +63,27 @@ impl Reference {
         Reference::new(t, q, qd)
     }
 
-    /// The time of the motion, s.
+    /// Duration of the motion, s.
     pub fn duration(&self) -> f64 {
         self.t[self.t.len() - 1]
     }
 
-    /// Where the motion starts, rad.
+    /// Joint angles at the start, rad.
     pub fn start(&self) -> &Joints {
         &self.q[0]
     }
 
-    /// Where the motion ends, rad.
+    /// Joint angles at the end, rad.
     pub fn end(&self) -> &Joints {
         &self.q[self.q.len() - 1]
     }
 
-    /// Whether joint j ever leaves its first position by more than rounding.
+    /// Whether joint j leaves its start angle by more than rounding.
     pub(super) fn moves(&self, j: usize) -> bool {
         self.q.iter().any(|q| (q[j] - self.q[0][j]).abs() > ROUNDING)
     }
 
-    /// (q, q̇) at `t` (s), by cubic Hermite interpolation; at rest outside the motion.
+    /// (q, q̇) at `t` (s) by cubic Hermite interpolation; at rest outside the motion.
     pub fn at(&self, t: f64) -> (Joints, Joints) {
         let last = self.t.len() - 1;
         if t.is_nan() || t < 0.0 {

@@ -3,18 +3,18 @@
 use crate::rapid::ir::number::{TIME_DECIMALS, joint_as_emitted};
 use crate::retime::motion::stream::{Stream, StreamError};
 
-/// Step of the times of an emitted stream, s.
+/// Resolution of the times of an emitted stream, s.
 pub fn quantum() -> f64 {
     1.0 / 10_f64.powf(TIME_DECIMALS as f64)
 }
 
-/// At least half a step below `t`: what rounding the figures of one stream does to the time of
-/// the next movement must not add up to a longer cycle.
+/// `t` rounded down by at least half a step, so that the rounding of one stream does not lengthen
+/// the cycle through the time of the next movement.
 pub fn round_down(t: f64) -> f64 {
     (t / quantum() - 0.5).floor() * quantum()
 }
 
-/// At or above `t`.
+/// `t` rounded up.
 pub fn round_up(t: f64) -> f64 {
     (t / quantum()).ceil() * quantum()
 }
@@ -28,7 +28,7 @@ pub fn rounded_points(stream: &Stream) -> Result<Stream, StreamError> {
     Stream::new(*stream.start(), points, stream.intervals().to_vec())
 }
 
-/// Intervals as they will be emitted, with the same sum.
+/// Intervals rounded as in the emitted text, with the sum `duration`.
 pub fn rounded_intervals(intervals: &[f64], duration: f64) -> Vec<f64> {
     let total = (duration / quantum()).round() as i64;
     let mut ticks: Vec<i64> = Vec::with_capacity(intervals.len());

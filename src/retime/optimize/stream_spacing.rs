@@ -1,40 +1,40 @@
-//! Intervals of a stream, chosen by the third derivative of the motion.
+//! Intervals of a stream, chosen from the third derivative of the motion.
 //!
-//! A quadratic spline with spacing h misses a motion by at most h³ |q⃛| √3/216 (the peak of the
-//! third Bernoulli polynomial over 3!). Spacing h = (ε 216/(√3 |q⃛|))^⅓ spends the error evenly.
+//! The error of a quadratic spline with spacing h is at most h³ |q⃛| √3/216 (the peak of the third
+//! Bernoulli polynomial over 3!). Spacing h = (ε 216/(√3 |q⃛|))^⅓ makes the error uniform.
 
 use super::stream_reference::Reference;
 use crate::retime::motion::stream::{DOF, Joints};
 
-/// h³ |q⃛| times this is the error of a quadratic spline.
+/// Error of a quadratic spline over h³ |q⃛|.
 const ERROR_CONSTANT: f64 = 0.008_018_753_738_744_8;
-/// h² |q̈⊥| times this is the distance of the polygon of the points from their quadratic spline,
-/// q̈⊥ being the acceleration across the path.
+/// Distance of the polygon of the points from the quadratic spline over h² |q̈⊥|, with q̈⊥ the
+/// acceleration across the path.
 const POLYGON_CONSTANT: f64 = 0.125;
 /// Samples of the density per shortest interval.
 const SAMPLES: f64 = 5.0;
-/// Largest change of the spacing along the motion, s per s: neighbours differ by a third.
+/// Largest change of the spacing along the motion, s/s: neighbours differ by at most a third.
 const SMOOTHNESS: f64 = 0.3;
-/// Fewest intervals where the time allows them: rest, motion, rest.
+/// Fewest intervals if the duration permits them: rest, motion, rest.
 const FEWEST: f64 = 4.0;
 
-/// Most intervals, whatever the shortest one is.
+/// Largest number of intervals, independent of the shortest one.
 const MOST: f64 = 1e4;
 
-/// Limits on the intervals of a stream, and the accepted errors of its motion.
+/// Limits on the intervals of a stream and accepted errors of its motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spacing {
     /// Shortest interval, s.
     pub shortest: f64,
-    /// The same where the polygon asks for it: points are far apart in space there.
+    /// The same where the polygon needs closer points, s.
     pub closest: f64,
-    /// Longest interval, s; infinite where only the error bounds it.
+    /// Longest interval, s; infinite if only the error limits it.
     pub longest: f64,
-    /// Error that the spline may have, in radians or whatever `lever` makes of them.
+    /// Accepted error of the spline, in lever units.
     pub tolerance: f64,
-    /// Distance that the polygon of the points may have from the motion, in the same unit.
+    /// Accepted distance of the polygon of the points from the motion, in lever units.
     pub polygon: f64,
-    /// Weight of each joint in the error: 1 for radians, its distance to the tool for metres.
+    /// Weight of each joint in the error: 1 for radians, its distance to the TCP for metres.
     pub lever: Joints,
 }
 
@@ -51,9 +51,9 @@ impl Default for Spacing {
     }
 }
 
-/// Intervals, s, that add up to `duration`, for a stream that follows `reference` in that time.
-/// None is below the shortest one, or the closest one where the polygon asks for that, unless the whole
-/// duration is, or much above the longest.
+/// Intervals, s, with the sum `duration` for a stream that follows `reference` in that time. None
+/// is below the shortest (the closest where the polygon needs it), unless the whole duration is, or
+/// much above the longest.
 pub fn adaptive_intervals(reference: &Reference, duration: f64, spacing: &Spacing) -> Vec<f64> {
     let [shortest, closest] = [spacing.shortest, spacing.closest].map(|s| s.max(duration / MOST));
     if !(duration > 2.0 * shortest && duration.is_finite()) {
@@ -84,7 +84,7 @@ pub fn adaptive_intervals(reference: &Reference, duration: f64, spacing: &Spacin
         let back = count - 1 - i;
         width[back] = width[back].min(width[back + 1] + SMOOTHNESS * step);
     }
-    // Equal shares of Σ step/width, each at least 1, so that no interval is below the shortest.
+    // Equal shares of Σ step/width, each at least 1, so that no interval is below the shortest one.
     let total: f64 = width.iter().map(|w| step / w).sum();
     let points = total.floor().max(1.0);
     let share = total / points;
@@ -103,7 +103,7 @@ pub fn adaptive_intervals(reference: &Reference, duration: f64, spacing: &Spacin
     intervals
 }
 
-/// The change of a velocity, weighted by the levers, across its own direction.
+/// The component of a velocity change across the velocity, weighted by the levers.
 fn turn(lever: &Joints, here: &Joints, before: &Joints, after: &Joints) -> f64 {
     let change: Joints = std::array::from_fn(|j| lever[j] * (after[j] - before[j]));
     let along: Joints = std::array::from_fn(|j| lever[j] * here[j]);

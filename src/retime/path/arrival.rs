@@ -1,4 +1,4 @@
-//! The end of a line or arc whose target states no configuration.
+//! The end of a line or arc whose target has no configuration.
 
 use super::build::{MAX_PIECE, measure};
 use super::joint_path::Joints;
@@ -6,8 +6,8 @@ use super::leg::Leg;
 use crate::arm::kinematics::ik_near;
 use crate::arm::robot::Model;
 
-/// Joints at the end of a Cartesian leg (rad): the inverse kinematics is followed along the leg from
-/// its start, nearest solution to nearest solution; `None` where a pose on the way has none.
+/// Joint angles at the end of a Cartesian leg (rad), from the nearest inverse solutions in steps
+/// along the leg; `None` if a pose on it has no solution.
 pub fn arrival(model: &Model, leg: &Leg) -> Option<Joints> {
     let curve = measure(model, leg, 0, &leg.start).ok()?.curve?;
     let steps = (curve.length() / MAX_PIECE).ceil().max(1.0) as usize;

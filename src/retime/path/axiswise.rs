@@ -1,7 +1,7 @@
-//! Lines and arcs whose wrist is interpolated axis by axis: `SingArea\Wrist`.
+//! Lines and arcs with axis-wise interpolation of the wrist: `SingArea\Wrist`.
 //!
-//! The TCP stays on its curve while axes 4 to 6 turn at constant rates from their angles at the start
-//! to those at the end; in between the orientation of the tool differs from the programmed one (ABB,
+//! The TCP stays on its curve while axes 4 to 6 turn at constant rates from their start to
+//! their end angles; the orientation of the tool in between differs from the programmed one (ABB,
 //! RAPID overview, "Positioning during program execution").
 
 use nalgebra::{Matrix3, Vector3, Vector6};
@@ -11,24 +11,24 @@ use super::joint_path::{Joints, PathPoint};
 use crate::arm::kinematics::{Tcp, fk};
 use crate::arm::robot::Model;
 
-/// Newton steps before a position counts as not reachable.
+/// Largest number of Newton steps.
 const STEPS: usize = 20;
-/// Error of the TCP position at which the iteration has converged, m.
+/// TCP position error at which the iteration has converged, m.
 const CONVERGED: f64 = 1e-12;
-/// Joints that place the TCP.
+/// Number of joints that position the TCP.
 const ARM: usize = 3;
 
-/// Wrist angles (rad) that are linear in the parameter.
+/// Wrist angles (rad), linear in the path parameter.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wrist {
-    /// At 0.
+    /// Angles at 0.
     pub(super) start: [f64; 3],
-    /// Per parameter.
+    /// Derivative by the parameter.
     pub(super) rate: [f64; 3],
 }
 
 impl Wrist {
-    /// From the wrist of one position of the joints to that of another, over `length`.
+    /// From the wrist angles of `start` to those of `end` over `length`.
     pub(super) fn new(start: &Joints, end: &Joints, length: f64) -> Wrist {
         let start3 = [start[3], start[4], start[5]];
         Wrist {
@@ -65,8 +65,8 @@ impl Wrist {
         (error.norm() < NEAR_ENOUGH).then_some(q)
     }
 
-    /// Joints and their derivatives at the joints `q` that [`Wrist::solve`] gave for a place of
-    /// the curve; `None` where the arm is singular.
+    /// Joint angles and derivatives at a curve point with the solution `q` of [`Wrist::solve`];
+    /// `None` if the arm is singular.
     pub(super) fn derivatives(
         &self,
         model: &Model,
@@ -86,10 +86,10 @@ impl Wrist {
     }
 }
 
-/// Largest error that rounding may leave after the last Newton step, m.
+/// Largest accepted error after the last Newton step, m.
 const NEAR_ENOUGH: f64 = 1e-9;
 
-/// The part of a Jacobian by which the arm moves the TCP.
+/// The part of a Jacobian that maps the arm joints to the TCP velocity.
 fn arm(jacobian: &nalgebra::Matrix6<f64>) -> Matrix3<f64> {
     jacobian.fixed_view::<3, 3>(0, 0).into_owned()
 }

@@ -1,15 +1,14 @@
 //! The shape of a corner zone.
 //!
-//! On [−1, 1] the direction turns from D₁ to D₂: dp/dx = D₁ (1 − W) + D₂ W. The
-//! curvature W′ is a trapezoid with soft ends. Its plateau is chosen so that the
-//! closest approach to the corner is 0.217·r·|d₂ − d₁|, as measured on an IRC5
-//! (a parabola would give 0.25, a smoothstep 0.1875).
+//! On [−1, 1] the direction turns from D₁ to D₂: dp/dx = D₁ (1 − W) + D₂ W. The curvature W′ is a
+//! trapezoid. Its plateau gives a closest approach to the corner of 0.217·r·|d₂ − d₁|, as measured
+//! on an IRC5 (a parabola has 0.25, a smoothstep 0.1875).
 
-/// Half width of the plateau of W′. With b for it, the mean of |x| under W′ is
-/// (1 + b + b²) / (3 (1 + b)), and half of it is the closest approach: 0.217.
+/// Half width b of the plateau of W′. The mean of |x| under W′ is (1 + b + b²) / (3 (1 + b)); half
+/// of it is the closest approach: 0.217.
 const PLATEAU: f64 = 0.7205;
 
-/// Places where W′ has a kink: nodes of an interpolation belong there.
+/// Kinks of W′, which must be nodes of an interpolation.
 pub const KINKS: [f64; 5] = [-1.0, -PLATEAU, 0.0, PLATEAU, 1.0];
 
 /// The turn at x ∈ [−1, 1]: (∫W, W, W′), with ∫W from −1.

@@ -1,4 +1,4 @@
-//! From legs to a joint path.
+//! Joint paths from legs.
 
 use nalgebra::{Isometry3, Matrix6, UnitQuaternion, Vector3, Vector6};
 
@@ -10,43 +10,43 @@ use super::leg::{Leg, LegKind, PathError, first_difference};
 use crate::arm::kinematics::{fk, ik_near, limits_ok};
 use crate::arm::robot::Model;
 
-/// Parameter length of a turn of the tool or of a joint where the TCP hardly moves, m/rad.
+/// Parameter length of a rotation of the tool or of a joint without TCP motion, m/rad.
 const METRES_PER_RADIAN: f64 = 0.1;
-/// A leg shorter than this (m, or rad × the above) does not move.
+/// Parameter length below which a leg does not move, m.
 const NO_MOTION: f64 = 1e-7;
 /// Longest piece of a Cartesian curve, m.
 pub(super) const MAX_PIECE: f64 = 0.04;
-/// A piece is split while its middle is farther than this from the exact joints, rad.
+/// Largest distance of the middle of a piece from the exact joint angles, rad.
 const PIECE_TOLERANCE: f64 = 2e-7;
-/// Pieces are not split below this length, m: a line that needs it runs into a singularity.
+/// Shortest piece, m: a line that needs shorter ones is singular.
 const MIN_PIECE: f64 = 1e-5;
-/// Joint motion per m of TCP path above which a line counts as singular, rad/m.
+/// Joint motion per TCP path above which a line is singular, rad/m.
 const SINGULAR_RATE: f64 = 300.0;
 /// Samples for the TCP length of a joint leg.
 const LENGTH_SAMPLES: usize = 24;
 
-/// A leg with its lengths and its curve, from which the zones follow.
+/// A leg with its lengths and its curve.
 pub(super) struct Measured<'a> {
     leg: &'a Leg,
     index: usize,
     /// TCP length, m.
     length: f64,
-    /// Angle that the tool turns by, rad.
+    /// Rotation angle of the tool, rad.
     angle: f64,
     /// Length in the parameter s.
     extent: f64,
     /// The Cartesian curve over [0, extent]; `None` for joint legs.
     pub(super) curve: Option<Curve>,
-    /// The wrist angles, where they are interpolated axis by axis.
+    /// The wrist angles, if they are interpolated axis by axis.
     wrist: Option<Wrist>,
 }
 
-/// The joint paths of a run: legs between zones. A corner without room for a zone (a turn on
-/// the spot next to a line, a zone of size 0) ends one path and begins the next: the robot
-/// stands there for a moment.
+/// The joint paths of a run: legs with zones between them. A corner without space for a zone (a
+/// rotation on the spot next to a line, a zone of size 0) ends one path and begins the next: the
+/// robot stops there.
 ///
 /// # Errors
-/// A leg that can't be followed.
+/// A leg that cannot be followed.
 pub fn build(model: &Model, legs: &[Leg]) -> Result<Vec<JointPath>, PathError> {
     let mut paths = Vec::new();
     let mut start = legs.first().map_or([0.0; DOF], |leg| leg.start);
@@ -70,7 +70,7 @@ pub fn build(model: &Model, legs: &[Leg]) -> Result<Vec<JointPath>, PathError> {
     Ok(paths)
 }
 
-/// The lengths and the curve of a leg that begins at the joints `start` (rad).
+/// Lengths and curve of a leg that starts at the joint angles `start` (rad).
 pub(super) fn measure<'a>(
     model: &Model,
     leg: &'a Leg,
@@ -111,7 +111,7 @@ pub(super) fn measure<'a>(
                 };
                 (length, Some(curve))
             } else if (via - a).dot(&(b - via)) > 0.0 {
-                // A circle point on the chord: the logged runs follow the line.
+                // Via point on the chord: logged runs follow the line.
                 line(&from, &to, &turn)
             } else {
                 return Err(PathError::FlatArc { leg: index });
@@ -128,7 +128,7 @@ pub(super) fn measure<'a>(
     Ok(Measured { leg, index, length, angle, extent, curve, wrist })
 }
 
-/// TCP length of a line (m) and its curve; none if it does not move.
+/// TCP length of a line (m) and its curve; `None` if it does not move.
 fn line(from: &Isometry3<f64>, to: &Isometry3<f64>, turn: &Vector3<f64>) -> (f64, Option<Curve>) {
     let chord = to.translation.vector - from.translation.vector;
     let length = chord.norm();
@@ -146,10 +146,10 @@ fn along(a: &Joints, b: &Joints, share: f64) -> Joints {
     std::array::from_fn(|j| a[j] + (b[j] - a[j]) * share)
 }
 
-/// Size of the zone between two legs in s, the same on both sides; 0 where there is none.
+/// Size in s of the zone between two legs, equal on both sides; 0 without a zone.
 ///
-/// A zone is cut to half of the shorter leg. Where the tool turns much, the zone is reduced to
-/// the smallest of its relative sizes (RAPID reference, zonedata).
+/// A zone is limited to half of the shorter leg. If the tool rotates much, the smallest of the
+/// relative sizes holds (RAPID reference, zonedata).
 fn zone_size(before: &Measured<'_>, after: &Measured<'_>) -> f64 {
     let zone = &before.leg.zone;
     let turning = |leg: &Measured<'_>| leg.length < METRES_PER_RADIAN * leg.angle * 0.01;
@@ -170,7 +170,7 @@ fn zone_size(before: &Measured<'_>, after: &Measured<'_>) -> f64 {
 fn assemble(model: &Model, legs: &[Measured<'_>]) -> Result<JointPath, PathError> {
     let mut builder = Builder { model, pieces: Vec::new(), s: 0.0, q: legs[0].leg.start };
     let mut trimmed = 0.0;
-    // Joints at the programmed start of the current leg.
+    // Joint angles at the programmed start of the current leg.
     let mut corner = legs[0].leg.start;
     for (i, leg) in legs.iter().enumerate() {
         let next = legs.get(i + 1);
@@ -185,7 +185,7 @@ fn assemble(model: &Model, legs: &[Measured<'_>]) -> Result<JointPath, PathError
         corner = leg.leg.end;
         trimmed = zone;
     }
-    // A leg that does not move is left out; its neighbours keep their indices.
+    // A leg that does not move has no piece; the others keep their indices.
     let first = legs[0].index;
     let last = legs[legs.len() - 1].index;
     let extents = (first..=last).map(|index| {
@@ -208,12 +208,12 @@ struct Builder<'a> {
     model: &'a Model,
     pieces: Vec<Piece>,
     s: f64,
-    /// Joints at the end of the pieces so far: they select the branch of the inverse kinematics.
+    /// Joint angles at the end of the last piece; they select the inverse solution.
     q: Joints,
 }
 
 struct Arrival {
-    /// Joints at the programmed end of the leg, reached along it.
+    /// Joint angles at the programmed end of the leg, reached along it.
     end: Joints,
 }
 
@@ -234,7 +234,7 @@ impl Builder<'_> {
                     self.push(leg.index, PieceKind::Joint, to - from, &a, &b);
                 }
                 self.q = joint_point(leg, start, to).q;
-                // The range of the joints is convex but for conditional limits: a few places suffice.
+                // The joint range is convex except for conditional limits: four samples suffice.
                 for share in [0.25, 0.5, 0.75, 1.0] {
                     self.check_limits(leg, &along(start, &end, share), share)?;
                 }
@@ -244,7 +244,7 @@ impl Builder<'_> {
                 if to - from > NO_MOTION {
                     self.trace(leg, curve, PieceKind::Cartesian, from, to)?;
                 }
-                // Up to the programmed end: it tells the configuration of arrival.
+                // Continue to the programmed end, for the configuration there.
                 let mut q = self.q;
                 let rest = curve.length() - to;
                 let steps = (rest / MAX_PIECE).ceil().max(1.0) as usize;
@@ -257,7 +257,7 @@ impl Builder<'_> {
         }
     }
 
-    /// The zone between two legs, half of it on each.
+    /// The zone between two legs, one half on each.
     fn round(
         &mut self,
         before: &Measured<'_>,
@@ -303,7 +303,7 @@ impl Builder<'_> {
                 let a = self.leg_point(before, start, before.extent - size)?;
                 self.q = a.q;
                 let b = {
-                    // The branch after the corner is reached through the corner.
+                    // The inverse solution after the corner is continued from the corner.
                     self.q = *corner;
                     self.leg_point(after, corner, size)?
                 };
@@ -333,7 +333,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Pieces along a curve of the TCP, each within the tolerance.
+    /// Pieces along a TCP curve, each within the tolerance.
     fn trace(
         &mut self,
         leg: &Measured<'_>,
@@ -369,7 +369,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Joints and their derivatives at x of a curve, on the branch next to `near`.
+    /// Joint angles and derivatives at x of a curve, on the inverse solution next to `near`.
     fn curve_point(
         &self,
         leg: &Measured<'_>,
@@ -408,7 +408,7 @@ impl Builder<'_> {
         near: &Joints,
         x: f64,
     ) -> Result<Joints, PathError> {
-        // Largest turn of a joint between neighbouring points; more is a change of branch, rad.
+        // Largest joint step between neighbouring points of one inverse solution, rad.
         const JUMP: f64 = 0.6;
         let tool = &leg.leg.tool;
         let q = match &leg.wrist {

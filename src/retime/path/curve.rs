@@ -22,7 +22,7 @@ pub struct CurvePoint {
 /// A curve of the TCP pose, parametrised over [0, length].
 #[derive(Clone, Debug)]
 pub enum Curve {
-    /// Straight line with a uniform turn.
+    /// Straight line with a uniform rotation.
     Line {
         /// Pose at 0.
         start: Isometry3<f64>,
@@ -30,35 +30,35 @@ pub enum Curve {
         direction: Vector3<f64>,
         /// Rotation vector per parameter, base frame.
         turn: Vector3<f64>,
-        /// End of the parameter.
+        /// Length in the parameter.
         length: f64,
     },
-    /// Circular arc with a uniform turn.
+    /// Circular arc with a uniform rotation.
     Arc {
         /// Orientation at 0.
         start: UnitQuaternion<f64>,
         /// Centre, m.
         center: Vector3<f64>,
-        /// From the centre to the start, m.
+        /// Vector from the centre to the start, m.
         radius: Vector3<f64>,
-        /// Unit normal: the arc turns about it.
+        /// Unit vector of the arc axis.
         normal: Vector3<f64>,
         /// Angle of the arc per parameter, rad.
         rate: f64,
         /// Rotation vector of the tool per parameter, base frame.
         turn: Vector3<f64>,
-        /// End of the parameter.
+        /// Length in the parameter.
         length: f64,
     },
-    /// A rounded corner: parameter −half … half, shifted to begin at 0.
+    /// A rounded corner on −half … half, shifted to start at 0.
     Corner {
         /// Pose of the programmed point.
         corner: Isometry3<f64>,
-        /// dp/dx of the line before and after.
+        /// dp/dx before and after the corner.
         directions: [Vector3<f64>; 2],
-        /// Rotation vector per parameter before and after, in the corner's frame.
+        /// Rotation vector per parameter before and after, in the corner frame.
         turns: [Vector3<f64>; 2],
-        /// Half of the zone in the parameter.
+        /// Half of the zone length in the parameter.
         half: f64,
     },
 }
@@ -67,7 +67,7 @@ pub enum Curve {
 const ANGULAR_STEP: f64 = 1e-5;
 
 impl Curve {
-    /// End of the parameter.
+    /// Length in the parameter.
     pub fn length(&self) -> f64 {
         match self {
             Curve::Line { length, .. } | Curve::Arc { length, .. } => *length,
@@ -123,7 +123,7 @@ impl Curve {
     }
 }
 
-/// φ(z): the turn relative to the corner as a rotation vector in the corner's frame.
+/// φ(z): the rotation vector relative to the corner, in the corner frame.
 fn corner_vector(turns: &[Vector3<f64>; 2], half: f64, z: f64) -> Vector3<f64> {
     let [integral, _, _] = blend::turn(z);
     turns[0] * (half * z) + (turns[1] - turns[0]) * (half * integral)
@@ -133,14 +133,13 @@ fn corner_rotation(turns: &[Vector3<f64>; 2], half: f64, z: f64) -> UnitQuaterni
     UnitQuaternion::from_scaled_axis(corner_vector(turns, half, z))
 }
 
-/// Angular velocity per parameter in the corner's frame: the left Jacobian of SO(3) at φ
-/// applied to dφ/dx.
+/// Angular velocity per parameter in the corner frame: left Jacobian of SO(3) at φ times dφ/dx.
 fn corner_angular(turns: &[Vector3<f64>; 2], half: f64, z: f64) -> Vector3<f64> {
     let phi = corner_vector(turns, half, z);
     let [_, weight, _] = blend::turn(z);
     let rate = turns[0] + (turns[1] - turns[0]) * weight;
     let angle2 = phi.norm_squared();
-    // Series below 1e-4 rad², where the closed form loses digits.
+    // Series below 1e-4 rad², where the closed form is inaccurate.
     let (a, b) = if angle2 < 1e-4 {
         (0.5 - angle2 / 24.0, 1.0 / 6.0 - angle2 / 120.0)
     } else {
@@ -151,11 +150,11 @@ fn corner_angular(turns: &[Vector3<f64>; 2], half: f64, z: f64) -> Vector3<f64> 
     rate + cross * a + phi.cross(&cross) * b
 }
 
-/// Twice the area of a triangle against its size: below, the radius is not determined.
+/// Smallest ratio of twice the triangle area to the squared side; below it the radius is undefined.
 const FLAT: f64 = 1e-6;
 
-/// The circle through three points: centre and angle from the first to the last by way of
-/// the second, about a unit normal. `None` if they lie on a line.
+/// The circle through three points: centre, unit normal and angle from the first to the last point
+/// through the second. `None` if they lie on a line.
 pub fn circle(
     start: &Vector3<f64>,
     via: &Vector3<f64>,
@@ -179,13 +178,13 @@ pub fn circle(
         if angle < 0.0 { angle + std::f64::consts::TAU } else { angle }
     };
     let (to_via, to_end) = (angle_to(via), angle_to(end));
-    // The normal of start→via, start→end always passes the via point first.
+    // About the normal of start→via × start→end the via point always comes first.
     if to_via <= to_end { Some((center, unit, to_end)) } else { None }
 }
 
-/// The rotation vector (base frame) that takes one orientation to another the short way.
+/// The rotation vector (base frame) of the shorter rotation between two orientations.
 pub fn rotation_between(from: &UnitQuaternion<f64>, to: &UnitQuaternion<f64>) -> Vector3<f64> {
-    // The logarithm takes the shorter of the two quaternions of the rotation.
+    // The logarithm uses the shorter of the two quaternions of a rotation.
     (to * from.inverse()).scaled_axis()
 }
 

@@ -4,14 +4,14 @@ use std::ops::Range;
 
 use crate::arm::kinematics::Tcp;
 
-/// Joints of a robot that RAPID programs move.
+/// Number of joints of a robot in RAPID.
 pub const DOF: usize = 6;
 
 /// One number per joint.
 pub type Joints = [f64; DOF];
 
-/// Coefficients, lowest first, of the polynomial of degree 5 with this value, first and second
-/// derivative at 0 and at 1.
+/// Coefficients, lowest first, of the quintic with this value, first and second derivative at 0 and
+/// at 1.
 pub fn quintic([p0, v0, a0]: [f64; 3], [p1, v1, a1]: [f64; 3]) -> [f64; 6] {
     let d = p1 - p0;
     [
@@ -24,7 +24,7 @@ pub fn quintic([p0, v0, a0]: [f64; 3], [p1, v1, a1]: [f64; 3]) -> [f64; 6] {
     ]
 }
 
-/// What kind of curve a piece belongs to.
+/// Kind of the curve of a piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PieceKind {
     /// Straight in joint space.
@@ -40,11 +40,11 @@ pub enum PieceKind {
 /// A stretch [s, s + length] of a joint path.
 #[derive(Clone, Debug)]
 pub struct Piece {
-    /// Where it begins.
+    /// Start in the parameter.
     pub s: f64,
-    /// How long it is.
+    /// Length in the parameter.
     pub length: f64,
-    /// Index of the leg that it belongs to.
+    /// Index of its leg.
     pub leg: usize,
     /// Its kind.
     pub kind: PieceKind,
@@ -52,7 +52,7 @@ pub struct Piece {
     coefficients: [[f64; 6]; DOF],
 }
 
-/// Values and derivatives by s at one place: q, q′, q″.
+/// Values and derivatives by s at one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathPoint {
     /// Joint positions, rad.
@@ -64,7 +64,7 @@ pub struct PathPoint {
 }
 
 impl Piece {
-    /// The quintic with these values and derivatives at its ends.
+    /// The quintic with these values and derivatives at the ends.
     pub fn hermite(
         (s, length): (f64, f64),
         leg: usize,
@@ -82,7 +82,7 @@ impl Piece {
         Piece { s, length, leg, kind, coefficients }
     }
 
-    /// q at s, which must lie in the piece.
+    /// q at s within the piece.
     pub fn position(&self, s: f64) -> Joints {
         let u = (s - self.s) / self.length;
         let mut q = [0.0; DOF];
@@ -92,7 +92,7 @@ impl Piece {
         q
     }
 
-    /// dq/ds at s, which must lie in the piece.
+    /// dq/ds at s within the piece.
     pub fn rates(&self, s: f64) -> Joints {
         let u = (s - self.s) / self.length;
         let mut q1 = [0.0; DOF];
@@ -103,7 +103,7 @@ impl Piece {
         q1
     }
 
-    /// Values at s, which must lie in the piece.
+    /// Values at s within the piece.
     pub fn eval(&self, s: f64) -> PathPoint {
         let h = self.length;
         let u = (s - self.s) / h;
@@ -119,34 +119,34 @@ impl Piece {
     }
 }
 
-/// What the TCP does on a leg.
+/// TCP motion on a leg.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
-    /// Length of its path, m.
+    /// TCP path length, m.
     pub length: f64,
-    /// Angle that the tool turns by, rad.
+    /// Rotation angle of the tool, rad.
     pub angle: f64,
     /// Length in the parameter s.
     pub extent: f64,
-    /// Where the TCP is fixed, m.
+    /// The TCP, m.
     pub tool: Tcp,
-    /// True for an arc whose three points lie on a line, along which it is followed.
+    /// True for an arc with collinear points, which is followed as a line.
     pub flat_arc: bool,
 }
 
-/// A joint path over [0, length]: q and q′ are continuous; q″ may jump where pieces meet.
+/// A joint path over [0, length]: q and q′ are continuous; q″ may jump between pieces.
 #[derive(Clone, Debug, Default)]
 pub struct JointPath {
     pieces: Vec<Piece>,
-    /// Index of the first leg, and the legs from there on.
+    /// Index of the first leg; the legs from it on.
     legs: (usize, Vec<Extent>),
-    /// Joints where the path begins and ends, rad.
+    /// Joint angles at both ends, rad.
     ends: [Joints; 2],
 }
 
 impl JointPath {
-    /// From pieces that follow each other without a gap, the legs from the index `first` on
-    /// that they belong to, and the joints at both ends without the pieces' rounding.
+    /// A path of contiguous pieces and their legs from the index `first` on; `ends` are the joint
+    /// angles at both ends without rounding errors of the pieces.
     pub fn new(
         pieces: Vec<Piece>,
         first: usize,
@@ -156,12 +156,12 @@ impl JointPath {
         JointPath { pieces, legs: (first, legs), ends }
     }
 
-    /// Joints where the path begins, rad.
+    /// Joint angles at the start, rad.
     pub fn start(&self) -> Joints {
         self.ends[0]
     }
 
-    /// Joints where the path ends, rad.
+    /// Joint angles at the end, rad.
     pub fn end(&self) -> Joints {
         self.ends[1]
     }
@@ -176,7 +176,7 @@ impl JointPath {
         self.legs.0..self.legs.0 + self.legs.1.len()
     }
 
-    /// Where the path passes the programmed end of a leg: in the middle of the zone.
+    /// s at the programmed end of a leg: the middle of the zone.
     pub fn leg_end(&self, leg: usize) -> f64 {
         let after = self.pieces.partition_point(|p| p.leg <= leg);
         self.pieces.get(after).map_or(self.length(), |p| p.s)
@@ -187,12 +187,12 @@ impl JointPath {
         &self.pieces
     }
 
-    /// End of the parameter.
+    /// Length in the parameter.
     pub fn length(&self) -> f64 {
         self.pieces.last().map_or(0.0, |p| p.s + p.length)
     }
 
-    /// The piece that holds s; outside, the nearest.
+    /// The piece at s; outside the path the nearest one.
     pub fn piece_at(&self, s: f64) -> &Piece {
         let after = self.pieces.partition_point(|p| p.s <= s);
         &self.pieces[after.saturating_sub(1)]

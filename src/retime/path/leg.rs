@@ -1,4 +1,4 @@
-//! Legs of a run: one movement each, with its ends solved.
+//! Legs of a run: one movement each, with the joint angles of its ends.
 
 use nalgebra::Isometry3;
 
@@ -22,17 +22,17 @@ pub enum LegKind {
 pub struct Leg {
     /// Its geometry.
     pub kind: LegKind,
-    /// Joints at its start, rad.
+    /// Joint angles at its start, rad.
     pub start: Joints,
-    /// Joints at its programmed end, rad, in the configuration that the program states. A Cartesian
-    /// leg has to arrive in it.
+    /// Joint angles at its programmed end, rad, in the programmed configuration. A Cartesian leg
+    /// must arrive in this configuration.
     pub end: Joints,
-    /// Where the TCP is fixed, m.
+    /// The TCP, m.
     pub tool: Tcp,
-    /// Target pose of the TCP, seen from the robot's base frame or, of a stationary tool, from
-    /// tool0; for a joint leg the pose at `end`.
+    /// Target pose of the TCP in the base frame or, for a stationary tool, in tool0; for a joint
+    /// leg the pose at `end`.
     pub target: Isometry3<f64>,
-    /// True where the wrist of a line or arc is interpolated axis by axis (`SingArea\Wrist`).
+    /// True if the wrist of a line or arc is interpolated axis by axis (`SingArea\Wrist`).
     pub axiswise: bool,
     /// Programmed speed.
     pub speed: Speed,
@@ -40,40 +40,39 @@ pub struct Leg {
     pub zone: Zone,
 }
 
-/// Largest difference of a joint between the programmed end and the end reached along a
-/// line that still counts as the same, rad.
+/// Largest joint difference between the programmed end and the end reached along a line, rad.
 pub const SAME_JOINTS: f64 = 1e-3;
 
-/// Why a run has no path.
+/// Reason why a run has no path.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PathError {
-    /// Part of a line can't be reached.
+    /// Part of a line cannot be reached.
     #[error("the path leaves the robot's reach or limits {percent:.0} % along the move: {why}")]
     Unreachable {
         /// Index of the leg.
         leg: usize,
-        /// How far along.
+        /// Position on the leg, percent.
         percent: f64,
-        /// From the inverse kinematics.
+        /// Message of the inverse kinematics.
         why: String,
     },
-    /// A line passes through or next to a singularity.
+    /// A line passes through or near a singularity.
     #[error("the line passes a singularity {percent:.0} % along the move")]
     Singular {
         /// Index of the leg.
         leg: usize,
-        /// How far along.
+        /// Position on the leg, percent.
         percent: f64,
     },
-    /// A line ends in another configuration than the target states.
+    /// A line ends in another configuration than that of the target.
     #[error("the line ends in another configuration than its target states (axis {joint})")]
     Configuration {
         /// Index of the leg.
         leg: usize,
-        /// First axis that differs, from 1.
+        /// First different axis, from 1.
         joint: usize,
     },
-    /// Three points of an arc on a line.
+    /// The three points of an arc are collinear.
     #[error("the three points of the arc lie on a line or in one point")]
     FlatArc {
         /// Index of the leg.
@@ -82,7 +81,7 @@ pub enum PathError {
 }
 
 impl PathError {
-    /// Index of the leg that fails.
+    /// Index of the failed leg.
     pub fn leg(&self) -> usize {
         match self {
             PathError::Unreachable { leg, .. }

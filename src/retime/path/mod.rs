@@ -1,9 +1,8 @@
-//! Geometric paths: what a run of movements looks like in space and in the joints.
+//! Geometric paths: a run of movements in space and in the joints.
 //!
-//! A run goes from one stop point to the next. Its legs are straight lines in
-//! joint space, straight lines and circular arcs of the TCP; corner zones round
-//! the points between them. The result is one twice differentiable joint path
-//! q(s); s measures TCP length in m where the TCP moves.
+//! A run leads from one stop point to the next. Its legs are straight lines in joint space,
+//! straight lines and circular arcs of the TCP, with corner zones between them. The result is a
+//! joint path q(s); s is the TCP length in m where the TCP moves.
 
 mod arrival;
 mod axiswise;

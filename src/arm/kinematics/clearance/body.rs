@@ -1,7 +1,7 @@
 //! The shape of an arm with its tool.
 //!
-//! Nothing is published of the shapes of the arms, so that every link is taken as a capsule
-//! between the origins of its joints, with a radius that is a share of the arm's length.
+//! Arm shapes are not published, so each link is a capsule between its joint origins with a radius
+//! relative to the arm length.
 
 use nalgebra::{Point3, Vector3};
 
@@ -11,35 +11,35 @@ use super::super::fk::Frames;
 use super::capsule::Capsule;
 use super::obstacle::Obstacle;
 
-/// Radii over the length of the arm: upper links, wrist, tool.
+/// Radii relative to the arm length: upper links, wrist, tool.
 const RADII: [f64; 3] = [0.09, 0.05, 0.03];
-/// Points nearer to each other than this share of the arm are one.
+/// Distance of points below which they are equal, relative to the arm length.
 const APART: f64 = 1e-6;
-/// Parts of an arm that are nearer along it than their radii by this factor count as joined.
+/// Parts whose distance along the arm is below this multiple of their radii are joined.
 const JOINED: f64 = 1.5;
-/// Shortest arm that radii are a share of \[m\].
+/// Smallest arm length for the radii \[m\].
 const SHORTEST: f64 = 0.1;
 
-/// An arm with its tool among obstacles.
+/// An arm with its tool, and obstacles.
 #[derive(Clone, Debug)]
 pub struct Body<'a> {
     model: &'a Model,
-    /// Tool centre point in tool0 \[m\].
+    /// TCP in tool0 \[m\].
     tool: Vector3<f64>,
     length: f64,
     obstacles: Vec<Obstacle>,
 }
 
-/// A capsule of the arm's middle line.
+/// A capsule of the centre line of the arm.
 #[derive(Clone, Copy)]
 struct Part {
     capsule: Capsule,
-    /// Way from the base to its beginning along the middle line \[m\].
+    /// Distance of its start from the base along the centre line \[m\].
     begin: f64,
 }
 
 impl<'a> Body<'a> {
-    /// With a tool that reaches to `tool` in tool0 \[m\].
+    /// The arm with a tool that extends to `tool` in tool0 \[m\].
     #[must_use]
     pub fn new(model: &'a Model, tool: Vector3<f64>, obstacles: &[Obstacle]) -> Body<'a> {
         let joints = &model.kinematics.joints;
@@ -48,14 +48,13 @@ impl<'a> Body<'a> {
         Body { model, tool, length: length.max(SHORTEST), obstacles: obstacles.to_vec() }
     }
 
-    /// The capsules of base column, links and tool at the joint angles `q` \[rad\], in the base
-    /// frame.
+    /// The capsules of base column, links and tool at `q` \[rad\], in the base frame.
     #[must_use]
     pub fn capsules(&self, q: &[f64]) -> Vec<Capsule> {
         self.parts(&Frames::at(self.model, q)).into_iter().map(|part| part.capsule).collect()
     }
 
-    /// The least room at the joint angles `q` \[rad\]: to the obstacles, and to itself \[m\].
+    /// The least clearance at the joint angles `q` \[rad\]: to the obstacles, and to itself \[m\].
     #[must_use]
     pub fn margins(&self, q: &[f64]) -> [f64; 2] {
         let parts = self.parts(&Frames::at(self.model, q));
@@ -70,7 +69,7 @@ impl<'a> Body<'a> {
     }
 
     fn parts(&self, frames: &Frames) -> Vec<Part> {
-        // The middle line: base, origins of the joints, flange, tool centre point.
+        // The centre line: base, joint origins, flange, TCP.
         let mut points = vec![Point3::origin()];
         let flange = frames.flange(self.model);
         let origins = frames.origin.iter().take(self.model.dof);
@@ -98,8 +97,8 @@ impl<'a> Body<'a> {
     }
 }
 
-/// Parts that are no neighbours. What lies so near along the arm that it would touch in every
-/// pose is cut off from the later one.
+/// Pairs of parts that are not neighbours. A portion so close along the arm that it would touch in
+/// every pose is removed from the later part.
 fn pairs(parts: &[Part]) -> impl Iterator<Item = [Part; 2]> {
     parts.iter().enumerate().flat_map(move |(i, one)| {
         parts.iter().skip(i + 2).filter_map(move |other| {
@@ -118,7 +117,7 @@ fn pairs(parts: &[Part]) -> impl Iterator<Item = [Part; 2]> {
     })
 }
 
-/// Room between two parts \[m\].
+/// Clearance between two parts \[m\].
 fn between([one, other]: &[Part; 2]) -> f64 {
     let [a, b] = one.capsule.nearest_points(&other.capsule);
     (a - b).norm() - one.capsule.radius - other.capsule.radius
@@ -153,7 +152,7 @@ mod tests {
             let [_, straight] = body.margins(&[0.0, 0.0, 0.0, 0.0, 0.3, 0.0]);
             assert!(straight > 0.01, "{length}: {straight}");
         }
-        // Folded back, a long tool meets the upper arm or the forearm.
+        // Folded back, a long tool collides with the upper arm or the forearm.
         let body = Body::new(&model, Vector3::new(0.0, 0.0, 0.5), &[]);
         let [_, folded] = body.margins(&[0.0, 0.0, 0.0, 0.0, 3.0, 0.0]);
         assert!(folded < 0.0, "{folded}");

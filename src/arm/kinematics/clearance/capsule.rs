@@ -1,26 +1,26 @@
-//! A line with a radius.
+//! A line segment with a radius.
 
 use nalgebra::{Point3, Vector3};
 
-/// All points within a radius of a line.
+/// All points within a radius of a line segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capsule {
-    /// One end of the line \[m\].
+    /// One end of the segment \[m\].
     pub from: Point3<f64>,
-    /// The other one \[m\].
+    /// Other end of the segment \[m\].
     pub to: Point3<f64>,
     /// Radius \[m\].
     pub radius: f64,
 }
 
 impl Capsule {
-    /// The point of the line at a share of its length from 0 to 1.
+    /// The point of the segment at a share of its length, 0 to 1.
     #[must_use]
     pub fn at(&self, share: f64) -> Point3<f64> {
         self.from + self.along() * share
     }
 
-    /// Length of the line \[m\].
+    /// Length of the segment \[m\].
     #[must_use]
     pub fn length(&self) -> f64 {
         self.along().norm()
@@ -30,7 +30,7 @@ impl Capsule {
         self.to - self.from
     }
 
-    /// The nearest points of two lines. C. Ericson, "Real-time collision detection", 2005,
+    /// The nearest points of two segments. C. Ericson, "Real-time collision detection", 2005,
     /// section 5.1.9.
     #[must_use]
     pub fn nearest_points(&self, other: &Capsule) -> [Point3<f64>; 2] {
@@ -49,7 +49,7 @@ impl Capsule {
         } else {
             (s, t)
         };
-        // A line without a length leaves the other one its nearest point.
+        // If the other segment is a point, take the nearest point of this one.
         let s = if e > 0.0 { s } else { share(-c, a) };
         [self.at(s), other.at(t)]
     }
@@ -59,7 +59,7 @@ impl Capsule {
 mod tests {
     use super::*;
 
-    /// Of a distance \[m\], against points on both lines.
+    /// Tolerance of a distance from a grid of points on both segments \[m\].
     const GRID: f64 = 0.01;
 
     #[test]

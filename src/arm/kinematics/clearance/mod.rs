@@ -1,4 +1,4 @@
-//! Room around the arm: its capsules against planes, boxes and each other.
+//! Clearance of the arm: its capsules against planes, boxes and each other.
 
 mod body;
 mod capsule;

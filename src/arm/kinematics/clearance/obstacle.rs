@@ -4,31 +4,31 @@ use nalgebra::{Isometry3, Point3, Vector3};
 
 use super::capsule::Capsule;
 
-/// Steps of the search along a line: the golden section leaves 10⁻¹⁰ of it.
+/// Steps of the golden-section search, to 10⁻¹⁰ of the length.
 const STEPS: usize = 48;
 
-/// A half space that every point of arm and tool stays in: n · x ≥ d, in the base frame.
+/// A half space that contains all points of arm and tool: n · x ≥ d, in the base frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
     /// Unit vector into the half space.
     pub normal: Vector3<f64>,
-    /// Distance of the plane from the base frame's origin along it \[m\].
+    /// Distance of the plane from the origin of the base frame along the normal \[m\].
     pub distance: f64,
 }
 
-/// A box that no point of arm and tool enters.
+/// A box that contains no point of arm and tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KeepOut {
-    /// Its middle and axes in the base frame.
+    /// Its centre and axes in the base frame.
     pub pose: Isometry3<f64>,
-    /// Half its lengths \[m\].
+    /// Half of its lengths \[m\].
     pub half: Vector3<f64>,
 }
 
 /// A plane or a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Obstacle {
-    /// What lies beyond a plane.
+    /// The space beyond a plane.
     Plane(Plane),
     /// A box.
     KeepOut(KeepOut),
@@ -45,7 +45,7 @@ impl KeepOut {
         }
     }
 
-    /// Distance of a point, negative inside \[m\].
+    /// Distance of a point \[m\], negative inside.
     fn distance(&self, point: &Point3<f64>) -> f64 {
         let p = self.pose.inverse_transform_point(point).coords;
         let beyond = p.abs() - self.half;
@@ -53,8 +53,8 @@ impl KeepOut {
         if outside > 0.0 { outside } else { beyond.max() }
     }
 
-    /// Least distance of the points of a capsule's line \[m\], by the golden section: that of a
-    /// convex body is convex along a line, also inside.
+    /// Least distance of a capsule's segment \[m\] by golden-section search: the signed distance
+    /// from a convex body is convex along a line.
     fn line_distance(&self, capsule: &Capsule) -> f64 {
         let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
         let at = |share: f64| self.distance(&capsule.at(share));
@@ -77,7 +77,7 @@ impl KeepOut {
 }
 
 impl Obstacle {
-    /// Distance of a capsule's surface, negative where they overlap \[m\].
+    /// Distance of the surface of a capsule \[m\], negative if they overlap.
     #[must_use]
     pub fn room(&self, capsule: &Capsule) -> f64 {
         let distance = match self {
@@ -97,12 +97,12 @@ mod tests {
 
     use super::*;
 
-    /// Of a distance \[m\], against points on the line.
+    /// Tolerance of a distance from a grid of points on the segment \[m\].
     const GRID: f64 = 0.01;
-    /// Of two ways to one number.
+    /// Tolerance of two exact computations.
     const SAME: f64 = 1e-9;
 
-    /// The nearest point of a box by clamping; inside, the way out through the nearest face.
+    /// The nearest point of a box by clamping; inside the box, through the nearest face.
     fn brute(keep_out: &KeepOut, point: &Point3<f64>) -> f64 {
         let p = keep_out.pose.inverse_transform_point(point);
         let h = keep_out.half;

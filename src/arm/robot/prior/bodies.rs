@@ -1,4 +1,4 @@
-//! The bodies of an arm, from meshes of ABB's robots.
+//! The links of an arm from meshes of ABB robots.
 
 use super::known::{Known, Shape};
 use super::rules::Size;
@@ -7,13 +7,13 @@ use crate::arm::robot::geometry::Geometry;
 use crate::arm::robot::link::Link;
 use crate::arm::robot::model::Model;
 
-/// Evenly filled meshes put more mass far out than there is: of nine families of robots whose makers
-/// publish masses the moment about axis 2 is 0.93 of theirs.
+/// Homogeneous meshes have too much mass far out: for nine robot families with published masses the
+/// published moment about axis 2 is 0.93 of that of the meshes.
 const EVENLY_FILLED: f64 = 0.93;
 /// Distance of a rated load from the flange \[m\].
 const LOAD_DISTANCE: f64 = 0.1;
 
-/// The links of a robot, of its meshes or of its axes alone, and what they follow from.
+/// The links of a robot from its meshes or from its axes alone, and their source.
 pub(super) fn links(known: &Known, geometry: &Geometry, size: Size) -> (Vec<Link>, String) {
     if known.links.is_empty() {
         let (shapes, foot) = skeleton::shapes(geometry, size);
@@ -35,7 +35,7 @@ fn filled(shapes: &[Shape], moving: f64) -> Vec<Link> {
     shapes.iter().map(body).collect()
 }
 
-/// Distances along the stretched arm from joint 2: of each joint and of the flange \[m\].
+/// Distances of each joint and of the flange from joint 2 along the stretched arm \[m\].
 fn stretched(model: &Model) -> Vec<f64> {
     let joints = &model.kinematics.joints;
     let mut at = vec![0.0; joints.len() + 1];
@@ -47,29 +47,29 @@ fn stretched(model: &Model) -> Vec<f64> {
     at
 }
 
-/// Where the centre of mass of a link is along the stretched arm \[m\], from joint 2.
+/// Position of the centre of mass of a link along the stretched arm from joint 2 \[m\].
 fn centre(model: &Model, at: &[f64], link: usize) -> f64 {
     let joints = &model.kinematics.joints;
     let next = joints
         .get(link + 1)
         .map_or(model.kinematics.flange.translation.vector, |joint| joint.translation);
     let com = model.links[link].com;
-    // Frames of a wrist lie in one point; the link before them points the same way.
+    // Frames of a spherical wrist coincide; the preceding link has the same direction.
     let way = if next.norm() > SHORT { next } else { joints[link].translation };
     let along = if way.norm() > SHORT { com.dot(&way) / way.norm() } else { com.norm() };
     at[link] + along
 }
 
-/// Distances below this have no direction \[m\].
+/// Shorter vectors have no direction \[m\].
 const SHORT: f64 = 1e-3;
 
-/// Moment of the masses about axis 2 of the stretched arm with level upper arm \[kg m\].
+/// First moment of mass about axis 2 of the stretched arm with a level upper arm \[kg m\].
 pub(super) fn stretched_moment(model: &Model) -> f64 {
     let at = stretched(model);
     (1..model.dof).map(|i| model.links[i].mass * centre(model, &at, i)).sum()
 }
 
-/// Inertia about each joint of the stretched arm with its rated load \[kg m²\], rotors left out.
+/// Inertia about each joint of the stretched arm with its rated load, without rotors \[kg m²\].
 pub(super) fn rated_inertia(model: &Model, payload: f64) -> Vec<f64> {
     let at = stretched(model);
     let end = at[model.dof] + LOAD_DISTANCE;
@@ -79,7 +79,7 @@ pub(super) fn rated_inertia(model: &Model, payload: f64) -> Vec<f64> {
             .map(|i| {
                 let link = &model.links[i];
                 let lever = centre(model, &at, i) - from;
-                // The first axis and those of the wrist that turn along the arm see no lever.
+                // The first and third wrist axes have no lever.
                 let lever = if along_the_arm(j, model.dof) { 0.0 } else { lever };
                 link.mass * lever * lever + 0.5 * link.inertia.trace()
             })
@@ -90,8 +90,7 @@ pub(super) fn rated_inertia(model: &Model, payload: f64) -> Vec<f64> {
     (0..model.dof).map(inertia).collect()
 }
 
-/// Whether a joint turns the arm about its own direction when it is stretched: the first and the
-/// third of a wrist.
+/// Whether the axis of a joint is along the stretched arm: the first and third of a wrist.
 fn along_the_arm(joint: usize, dof: usize) -> bool {
     joint + 3 == dof || joint + 1 == dof
 }

@@ -1,4 +1,4 @@
-//! A model with estimates in place of what it lacks.
+//! Fills the gaps of a model with estimates.
 
 use super::bodies::{links, rated_inertia, stretched_moment};
 use super::known::{ARM, Known, type_name};
@@ -10,17 +10,17 @@ use crate::arm::robot::model::Model;
 use crate::arm::robot::motors::Motors;
 use crate::arm::robot::provenance::{Origin, Provenance};
 
-/// Share of the stretched gravity torque of axis 2 that a balancer carries when the axis is at 90
-/// degrees; a proposal without a source.
+/// Share of the gravity torque of axis 2 of the stretched arm that a balancer compensates with the
+/// axis at 90 degrees; assumed.
 const BALANCED: f64 = 0.7;
-/// Times of brakes that follow from none of the sizes \[s\].
+/// Brake times, independent of size \[s\].
 const RELEASE_S: f64 = 0.2;
 const ENGAGE_S: f64 = 0.1;
-/// Time of the planner from one acceleration limit to the other \[s\].
+/// Rise time of the acceleration of the planner \[s\].
 const RAMP_S: f64 = 0.1;
 
-/// The model with its missing dynamics, limits and powers estimated from its size. Stated numbers stay.
-/// A chain of fewer than 5 joints is returned unchanged.
+/// The model with estimates of its missing dynamics, limits and powers. Stated numbers stay. A
+/// chain of fewer than 5 joints is returned unchanged.
 #[must_use]
 pub fn estimated(model: Model) -> Model {
     let known = Known::from_model(&model);
@@ -40,11 +40,11 @@ pub fn estimated(model: Model) -> Model {
 
 struct Filling {
     model: Model,
-    /// Origins of what was there.
+    /// Origins of the stated numbers.
     stated: Vec<Origin>,
 }
 
-/// The deviation of a number with the deviation `sd` of its logarithm.
+/// Standard deviation of a number whose logarithm has the deviation `sd`.
 fn deviation(value: f64, sd: f64) -> f64 {
     value.abs() * sd
 }
@@ -64,7 +64,7 @@ impl Filling {
         });
     }
 
-    /// One number for each joint where there is none.
+    /// Adds one number per joint if the list is missing.
     fn by_joint(
         &mut self,
         (table, key): (&str, &str),
@@ -114,7 +114,7 @@ impl Filling {
         }
     }
 
-    /// Gravity torque about axis 2 of the stretched arm with its upper arm level \[Nm\].
+    /// Gravity torque about axis 2 of the stretched arm with a level upper arm \[Nm\].
     fn stretched_gravity(&self) -> f64 {
         GRAVITY * stretched_moment(&self.model)
     }
@@ -277,5 +277,5 @@ impl Filling {
     }
 }
 
-/// Largest acceleration of a small wrist \[rad/s²\]: what measured ones of an IRB1200 reach.
+/// Largest acceleration of a small wrist, measured on an IRB1200 \[rad/s²\].
 const MOST_ACCELERATION: f64 = 150.0;

@@ -1,10 +1,10 @@
 //! A Latin hypercube of standard normal numbers.
 //!
-//! Each number takes each of the equally likely strata once, in a random order that is the same each
-//! time. Sums of many numbers have a smaller sampling error than with independent draws.
+//! Each number takes each of the equally likely strata once, in a reproducible random order. Sums
+//! of many numbers have a smaller sampling error than with independent draws.
 
-/// Constants of the generator splitmix64 (G. Steele, D. Lea, C. Flood, "Fast splittable pseudorandom
-/// number generators", OOPSLA 2014).
+/// Constants of the generator splitmix64 (G. Steele, D. Lea, C. Flood, "Fast splittable
+/// pseudorandom number generators", OOPSLA 2014).
 const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
 const MIX: [u64; 2] = [0xbf58_476d_1ce4_e5b9, 0x94d0_49bb_1331_11eb];
 
@@ -19,13 +19,13 @@ impl Chance {
         z ^ (z >> 31)
     }
 
-    /// Below `end`.
+    /// A number below `end`.
     fn below(&mut self, end: usize) -> usize {
         (self.next() % end as u64) as usize
     }
 }
 
-/// `count` draws of `numbers` independent standard normal numbers, the same for a `seed`:
+/// `count` draws of `numbers` independent standard normal numbers, reproducible by `seed`:
 /// `[number][draw]`.
 #[must_use]
 pub fn standard_normals(numbers: usize, count: usize, seed: u64) -> Vec<Vec<f64>> {
@@ -42,8 +42,8 @@ pub fn standard_normals(numbers: usize, count: usize, seed: u64) -> Vec<Vec<f64>
         .collect()
 }
 
-/// The standard normal number below which a share `p` lies (P. Acklam's rational approximation, with
-/// an error below 1.2e-9). An exact quantile differs in the tenth digit, and with it every draw.
+/// Quantile of the standard normal distribution (P. Acklam's rational approximation, error below
+/// 1.2e-9). An exact quantile would change all draws in the tenth digit.
 fn quantile(p: f64) -> f64 {
     const A: [f64; 6] = [
         -3.969_683_028_665_376e1,

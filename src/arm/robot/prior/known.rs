@@ -1,4 +1,4 @@
-//! What is known of a robot's body: the table of ABB's robots, and what its file states.
+//! Known data of the robot body: the table of ABB robots and the robot file.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -10,42 +10,42 @@ use crate::arm::robot::link::symmetric;
 use crate::arm::robot::model::Model;
 use crate::arm::robot::provenance::Provenance;
 
-/// Joints of an arm that a prior is made for.
+/// Numbers of joints of arms with a prior.
 pub(super) const ARM: std::ops::RangeInclusive<usize> = 5..=7;
 
 /// The tables, with sources.
 const ROBOTS: &str = include_str!("robots.toml");
 
-/// Share of the total mass by which it may be wrong (standard deviation of the logarithm), by how it
-/// is known. A data sheet states whole kilograms.
+/// Standard deviation of the logarithm of the total mass by its source. A data sheet states whole
+/// kilograms.
 const MASS_SD: [(&str, f64); 4] =
     [("maker", 0.01), ("second hand", 0.02), ("memory", 0.05), ("guess", 0.08)];
 
-/// What is known of a robot's body.
+/// Known data of the robot body.
 #[derive(Clone, Debug)]
 pub(super) struct Known {
-    /// The whole robot \[kg\], with the standard deviation of its logarithm and who says so.
+    /// Total mass \[kg\], standard deviation of its logarithm, and source.
     pub(super) mass: Option<(f64, f64, String)>,
     /// kg.
     pub(super) payload: Option<f64>,
     /// m.
     pub(super) reach: Option<f64>,
-    /// The part that does not move \[kg\].
+    /// Mass of the fixed part \[kg\].
     pub(super) foot: Option<f64>,
-    /// Links by their share of the mass that moves; empty where there are no meshes.
+    /// Links with their shares of the moving mass; empty without meshes.
     pub(super) links: Vec<Shape>,
     /// Whether the meshes are those of another variant.
     pub(super) sister: bool,
-    /// Whether a spring or a gas cylinder carries a part of the gravity torque of axis 2.
+    /// Whether a spring or gas cylinder compensates a part of the gravity torque of axis 2.
     pub(super) balanced: bool,
     /// rad/s.
     pub(super) velocity: Option<(Vec<f64>, String)>,
 }
 
-/// A link without its mass, in its joint's frame.
+/// A link without its mass, in the joint frame.
 #[derive(Clone, Debug)]
 pub(super) struct Shape {
-    /// Share of the mass that moves.
+    /// Share of the moving mass.
     pub(super) share: f64,
     /// m.
     pub(super) com: Vector3<f64>,
@@ -54,7 +54,7 @@ pub(super) struct Shape {
 }
 
 impl Known {
-    /// What is known of the robot by its type and its file.
+    /// The data of a robot by its type and its file.
     pub(super) fn from_model(model: &Model) -> Known {
         let text = table(type_name(model));
         let mut known = text.map_or_else(Known::nothing, |text| Known::read(&text));
@@ -103,7 +103,7 @@ impl Known {
 }
 
 impl Known {
-    /// The size of the robot; unknown parts of it are estimated from the known ones.
+    /// The size of the robot; unknown parts are estimated from the known ones.
     pub(super) fn size(&self, model: &Model) -> Size {
         let reach = self.reach.unwrap_or_else(|| reach(model));
         let payload = self.payload;
@@ -113,12 +113,12 @@ impl Known {
     }
 }
 
-/// Factor by which a stated mass may differ from that of ABB's robots of the same reach and payload: the
-/// lightest arms that are sold are a fifth of it.
+/// Accepted ratio of a stated mass to that of ABB robots of the same reach and payload, up or down;
+/// the lightest commercial arms have a fifth.
 const ABSURD: f64 = 15.0;
 
-/// Checks that the stated masses are possible for an arm of the robot's reach; those in a wrong unit
-/// are not.
+/// Checks that the stated masses are possible for an arm of this reach; masses in a wrong unit are
+/// not.
 ///
 /// # Errors
 /// A mass is out of range.
@@ -142,7 +142,7 @@ pub fn check_mass(model: &Model) -> Result<(), RobotError> {
     if let Some(mass) = model.mass.filter(|mass| !(low..=high).contains(mass)) {
         return Err(refused("mass", mass, "the mass of the whole robot", usual));
     }
-    // What moves is a part of it.
+    // The moving mass is a part of the total mass.
     let moving: f64 = model.links.iter().map(|link| link.mass).sum();
     let usual = [LEAST_MOVING * low, high];
     if !model.links.is_empty() && !(usual[0]..=usual[1]).contains(&moving) {
@@ -151,10 +151,10 @@ pub fn check_mass(model: &Model) -> Result<(), RobotError> {
     Ok(())
 }
 
-/// Share of the whole mass that moves, at least.
+/// Smallest share of the moving mass in the total mass.
 const LEAST_MOVING: f64 = 0.3;
 
-/// The type of a robot: its name, if ABB's robots have it, else what its file extends or states.
+/// The type of a robot: its name if the table contains it, otherwise the type in its file.
 #[must_use]
 pub fn type_name(model: &Model) -> &str {
     let stated = model.type_name.as_ref().filter(|_| table(&model.name).is_none());
@@ -169,7 +169,7 @@ pub fn is_mass_known(model: &Model) -> bool {
     Known::from_model(model).mass.is_some() || (1..=model.links.len()).any(is_stated)
 }
 
-/// From axis 1 to the wrist's centre of the stretched arm \[m\].
+/// Distance from axis 1 to the wrist centre of the stretched arm \[m\].
 fn reach(model: &Model) -> f64 {
     let joints = &model.kinematics.joints;
     let foot = joints.get(1).map_or(0.0, |joint| joint.translation.xy().norm());
@@ -178,7 +178,7 @@ fn reach(model: &Model) -> f64 {
     foot + arm
 }
 
-/// A robot's table in the file.
+/// The table of a robot in the file.
 #[derive(Deserialize)]
 struct Table {
     mass: f64,
@@ -197,7 +197,7 @@ struct Table {
     links: Vec<[f64; 10]>,
 }
 
-/// The text of a robot's table, without its head.
+/// The text of the table of a robot without its header.
 fn table(name: &str) -> Option<String> {
     let (_, rest) = ROBOTS.split_once(&format!("\n[\"{name}\"]\n"))?;
     let end = rest.find("\n[\"").unwrap_or(rest.len());

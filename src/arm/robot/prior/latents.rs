@@ -1,4 +1,4 @@
-//! What is not known of a model: independent latent numbers, and what each changes.
+//! The unknowns of a model: independent latent variables and their effects.
 
 use super::known::{Known, type_name};
 use super::rules::{self, Maker, Size};
@@ -7,44 +7,44 @@ use crate::arm::robot::geometry::Coupling;
 use crate::arm::robot::model::Model;
 use crate::arm::robot::provenance::Provenance;
 
-/// Standard deviations of the logarithm of the masses of links, before they are brought to the mass
-/// that moves, of the first three and of those behind, and of their moments of inertia. With the
-/// deviation of the centres they give about the deviations that moments of gravity and inertia have between
-/// meshes and makers' masses: 0.13 and 0.20 about axes 2 and 3, 0.14 to 0.25 of inertias.
+/// Standard deviations of the logarithms of the link masses (first three, then outer ones) before
+/// they are scaled to the moving mass, and of the moments of inertia. Together with the deviation
+/// of the centres they reproduce the deviations between meshes and published masses: 0.13 and 0.20
+/// for gravity moments about axes 2 and 3, 0.14 to 0.25 for inertias.
 const LINK_MASS: [f64; 2] = [0.18, 0.33];
 const LINK_INERTIA: f64 = 0.35;
-/// The same of links that follow from the axes alone; and the power of the way that is left to the flange
-/// by which all links vary together. All four are the deviations of ABB's meshes from the rule times 1.3,
-/// which the bodies of 17 arms of seven other makers ask for (docs/robots.md).
+/// The same for links estimated from the axes alone, and the exponent of the remaining path length
+/// by which all links vary together. All are the deviations of ABB meshes from the rule times 1.3,
+/// as needed for 17 arms of seven other makers (docs/robots.md).
 const AXES_LINK_MASS: [f64; 2] = [0.33, 0.78];
 const TILT: f64 = 0.21;
-/// The same where the payload is not known, which the rule asks for.
+/// The same if the payload, an input of the rule, is unknown.
 const TILT_WITHOUT_PAYLOAD: f64 = 0.34;
-/// Standard deviation of a centre of mass over the distance of the joints.
+/// Standard deviation of a centre of mass relative to the joint distance.
 const CENTRE: f64 = 0.03;
-/// Deviation of the logarithm of the masses of links 2 and 3 by the rods beside them, which share the
-/// weight of the forearm and its motor otherwise than a serial arm does; chosen.
+/// Deviation of the logarithm of the masses of links 2 and 3 of a parallelogram robot, whose rods
+/// carry a part of the forearm and its motor; assumed.
 const RODS: f64 = 0.15;
-/// The shortest such distance over the length of the arm.
+/// Smallest joint distance for this, relative to the arm length.
 const SHORTEST: f64 = 0.1;
-/// Deviation of the logarithm of the mass that moves, beside that of the total mass.
+/// Deviation of the logarithm of the moving mass, in addition to that of the total mass.
 const MOVING: f64 = 0.05;
 const AXES_MOVING: f64 = 0.10;
-/// The same of centres that follow from the axes alone.
+/// Deviation of centres estimated from the axes alone.
 const AXES_CENTRE: f64 = 0.065;
-/// Part of a deviation that is left of one that a paper states, or an identification without its own
-/// deviations; chosen.
+/// Factor on the deviation of a number from a paper, or identified without stated deviations;
+/// assumed.
 const PAPER: f64 = 0.3;
 const IDENTIFIED: f64 = 0.15;
-/// Standard deviation of the logarithm of what a balancer carries.
+/// Standard deviation of the logarithm of the balancer torque.
 const SPRING: f64 = 0.3;
-/// The effect that a balancer is.
+/// Id of the balancer effect.
 pub(super) const SPRING_EFFECT: &str = "gravity_spring";
 
-/// Deviations of logarithms do not depend on the size of the robot.
+/// Deviations of logarithms do not depend on the size.
 const UNIT_SIZE: Size = Size { mass: 1.0, reach: 1.0, payload: 1.0 };
 
-/// What one latent number changes.
+/// The quantity that a latent variable changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Target {
     AllMasses,
@@ -62,18 +62,18 @@ pub(super) enum Target {
     Spring,
 }
 
-/// A standard normal number that stands for an unknown of the robot.
+/// A standard normal variable for an unknown of the robot.
 #[derive(Clone, Debug)]
 pub struct Latent {
     /// Name in reports.
     pub group: String,
-    /// The group, with a number where it has several: `masses of link 2, 3`.
+    /// The group, numbered if it has several: `masses of link 2, 3`.
     pub name: String,
-    /// What it changes, and by how much: standard deviations of logarithms, or m.
+    /// Changed quantities with standard deviations, of logarithms or in m.
     pub(super) terms: Vec<(Target, f64)>,
 }
 
-/// The latent numbers of a model with dynamics.
+/// The latent variables of a model with dynamics.
 pub(super) fn latents(model: &Model) -> Vec<Latent> {
     let known = Known::from_model(model);
     let shared_mass = has_shared_mass(model);
@@ -89,7 +89,7 @@ pub(super) fn latents(model: &Model) -> Vec<Latent> {
     latents.0
 }
 
-/// Whether the masses of the links add up to a sum that is known better: all are estimated.
+/// Whether all link masses are estimated, so that their sum is known better than each.
 pub(super) fn has_shared_mass(model: &Model) -> bool {
     let is_estimated =
         |i| model.provenance_of(&format!("link {i}"), "mass") == Some(Provenance::Estimated);
@@ -99,7 +99,7 @@ pub(super) fn has_shared_mass(model: &Model) -> bool {
 struct Latents(Vec<Latent>);
 
 impl Latents {
-    /// Adds a number that changes the targets by these deviations; those of 0 are left out.
+    /// Adds a variable that changes the targets by these deviations; zeros are omitted.
     fn add(&mut self, group: &str, mut terms: Vec<(Target, f64)>) {
         terms.retain(|(_, sd)| *sd > 0.0);
         if terms.is_empty() {
@@ -112,7 +112,7 @@ impl Latents {
         self.0.push(Latent { group: group.to_owned(), name, terms });
     }
 
-    /// The total mass, and how all links share it.
+    /// The total mass and its distribution over the links.
     fn total_mass(&mut self, model: &Model, known: &Known, by_axes: bool) {
         let total = known.mass.as_ref().map_or(rules::MASS_BY_SIZE, |(_, sd, _)| *sd);
         let moving = if by_axes { AXES_MOVING } else { MOVING };
@@ -130,7 +130,7 @@ impl Latents {
         }
     }
 
-    /// Mass, centre and inertia of each link.
+    /// Mass, centre of mass and inertia of each link.
     fn links(&mut self, model: &Model, by_axes: bool) {
         let dof = model.links.len();
         let length: f64 = model.kinematics.joints.iter().map(|j| j.translation.norm()).sum();
@@ -163,7 +163,7 @@ impl Latents {
     fn friction(&mut self, model: &Model) {
         let dof = model.links.len();
         let maker = Maker::from_name(type_name(model));
-        // What somebody measured of a joint has nothing in common with the others.
+        // Measured values of a joint are independent of the other joints.
         let coulomb = |j: usize| stated(model, "friction", "coulomb", j, model.friction.coulomb[j]);
         let viscous = |j: usize| stated(model, "friction", "viscous", j, model.friction.viscous[j]);
         let rough = |j: usize| match coulomb(j) {
@@ -229,14 +229,14 @@ impl Latents {
     }
 }
 
-/// Standard deviations of the common part and of the part of one joint, where the common part has the
-/// share `common` of the variance.
+/// Standard deviations of the common part and of the part of one joint, for a variance share
+/// `common` of the common part.
 fn parted(common: f64) -> (f64, f64) {
     (common.sqrt(), (1.0 - common).sqrt())
 }
 
-/// The deviation that a file states of one number of a list, over `scale`; of an estimate none, whose
-/// deviations are made of parts.
+/// The stated deviation of one number of a list, over `scale`; `None` for an estimate, whose
+/// deviations have several parts.
 fn stated(model: &Model, table: &str, key: &str, index: usize, scale: f64) -> Option<f64> {
     let origin = model.origin_of(table, key)?;
     let sd = origin.sd.as_ref().filter(|_| origin.provenance != Some(Provenance::Estimated))?;
@@ -244,7 +244,7 @@ fn stated(model: &Model, table: &str, key: &str, index: usize, scale: f64) -> Op
     (scale > 0.0).then(|| sd / scale)
 }
 
-/// Factor on the standard deviation of an estimate, by the provenance of a number.
+/// Factor on the standard deviation of an estimate by the provenance of a number.
 fn looseness(model: &Model, table: &str, key: &str) -> f64 {
     match model.provenance_of(table, key) {
         Some(Provenance::Estimated | Provenance::Assumed) => 1.0,

@@ -1,12 +1,12 @@
-//! Estimated dynamics: a prior of the unknown parameters of a robot, given the known ones.
+//! Estimated dynamics: a prior of the unknown parameters of a robot given the known ones.
 //!
-//! ABB publishes no dynamics. Geometry, total mass, payload and reach of a robot are known, and how
-//! they go with masses of links, friction, motors and power in arms of which these are known. So
-//! every number that a robot's file leaves out has a most likely value and a standard deviation
-//! here; [`estimated`] fills in the values, [`Spread`] draws robots that are as plausible.
+//! ABB publishes no dynamics. Known are geometry, total mass, payload and reach, and from other
+//! arms the relation of these to link masses, friction, motors and power. So each number that is
+//! missing in a robot file has a most likely value and a standard deviation: [`estimated`] fills in
+//! the values, [`Spread`] draws plausible robots.
 //!
-//! Positive numbers are log-normal. Correlated numbers have common latent numbers: the total mass is
-//! known better than how the links share it, and friction of all joints has a part in common.
+//! Positive numbers are log-normal. Correlated numbers share latent variables: the total mass is
+//! more certain than its distribution over the links; friction of all joints has a common part.
 
 mod bodies;
 mod fill;

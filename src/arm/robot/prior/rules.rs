@@ -1,12 +1,12 @@
-//! How numbers of an arm go with its size: total mass M (kg), reach R (m), payload p (kg).
+//! Relations of numbers of an arm to its size: total mass M (kg), reach R (m), payload p (kg).
 //!
-//! Torques: from the limits of 38 robots of KUKA (`kroshu/kuka_robot_descriptions`@7766e92a), deviations
-//! by leaving one out. Friction of ABB's robots: levels that eleven configurations state, the friction
-//! identified by Paes et al. 2014 and Obal & Gierlak 2025, over those torques; of others: that of five
-//! arms of five makers (docs/robots.md names them). Motors: ABB's 9C series (3AUA0000030840 REV C).
+//! Torques: limits of 38 KUKA robots (`kroshu/kuka_robot_descriptions`@7766e92a), deviations by
+//! leave-one-out. Friction of ABB robots: levels of eleven configurations and the friction
+//! identified by Paes et al. 2014 and Obal & Gierlak 2025, relative to those torques; of others:
+//! five arms of five makers (see docs/robots.md). Motors: ABB's 9C series (3AUA0000030840 REV C).
 //! Standard deviations are of the logarithm.
 
-/// Whose robot it is.
+/// Maker of the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Maker {
     Abb,
@@ -14,7 +14,7 @@ pub(super) enum Maker {
 }
 
 impl Maker {
-    /// By the name of the robot: ABB's have IRB or CRB before their number.
+    /// From the name of the robot: ABB names have IRB or CRB before the number.
     pub(super) fn from_name(name: &str) -> Maker {
         let name = name.to_uppercase();
         let is_number = |text: &str| {
@@ -30,7 +30,7 @@ impl Maker {
 pub(super) struct Size {
     /// Total mass \[kg\].
     pub(super) mass: f64,
-    /// From axis 1 to the wrist's centre, stretched \[m\].
+    /// Distance from axis 1 to the wrist centre of the stretched arm \[m\].
     pub(super) reach: f64,
     /// kg.
     pub(super) payload: f64,
@@ -43,7 +43,7 @@ pub(super) struct Rough {
     pub(super) sd: f64,
 }
 
-/// Factor and power of (M R) for the main axes and of (p R) for the wrist's, and the deviation.
+/// Factor and exponent of (M R) for main axes or (p R) for wrist axes, and deviation.
 const TORQUE: [(f64, f64, f64); 6] = [
     (11.8, 0.82, 0.22),
     (9.2, 0.85, 0.17),
@@ -52,18 +52,18 @@ const TORQUE: [(f64, f64, f64); 6] = [
     (5.1, 0.94, 0.42),
     (2.7, 0.96, 0.41),
 ];
-/// Friction at half of the speed over the largest torque, of ABB's robots.
+/// Friction at half speed relative to the largest torque, and deviation, of ABB robots.
 const FRICTION: [(f64, f64); 6] =
     [(0.042, 0.52), (0.060, 0.50), (0.068, 0.63), (0.089, 0.81), (0.133, 0.61), (0.108, 0.78)];
-/// Share of that friction that does not go with the speed, and its deviation.
+/// Share of that friction that is independent of speed, and its deviation.
 pub(super) const COULOMB: f64 = 0.4;
 pub(super) const COULOMB_SD: f64 = 0.3;
-/// The friction of other makers' robots over that, and its deviation.
+/// Ratio of the friction of other makers to it, and its deviation.
 const OTHER_FRICTION: (f64, f64) = (3.5, 0.91);
-/// Share of the variance of friction that all joints have in common, of ABB's robots and of others.
+/// Share of the friction variance common to all joints: ABB robots, others.
 const COMMON_FRICTION: [f64; 2] = [0.35, 0.59];
-/// Speed at a reach of 2 m and a payload of 20 kg \[degrees/s\], powers of both, deviation: of 52 robots
-/// of the catalogue, the mass adds nothing.
+/// Speed at a reach of 2 m and a payload of 20 kg \[degrees/s\], exponents of both, deviation: from
+/// 52 robots of the catalogue. The mass has no further effect.
 const SPEED: [(f64, f64, f64, f64); 6] = [
     (143.0, -0.32, -0.09, 0.27),
     (132.0, -0.25, -0.15, 0.27),
@@ -72,16 +72,16 @@ const SPEED: [(f64, f64, f64, f64); 6] = [
     (266.0, 0.11, -0.31, 0.26),
     (369.0, 0.16, -0.26, 0.33),
 ];
-/// Speed of the motors at the axes' speeds \[rad/s\].
+/// Motor speed at the axis speed limit \[rad/s\].
 const MOTOR_SPEED: f64 = 420.0;
 const RATIO_SD: f64 = 0.2;
 const ROTOR_SD: f64 = 0.45;
 const LOSS_SD: f64 = 0.6;
-/// Share of the variance of copper losses, and of rotors, that all joints have in common.
+/// Share of the variance of copper losses and of rotors common to all joints.
 pub(super) const COMMON_MOTORS: f64 = 0.5;
 
 impl Size {
-    /// Which rule a joint of so many follows: a robot of 7 joints has one more before its wrist.
+    /// Index of the rule for a joint: a robot of 7 joints has one more before its wrist.
     fn place(joint: usize, dof: usize) -> usize {
         if joint + 3 >= dof { 6 - (dof - joint).min(6) } else { joint.min(2) }
     }
@@ -94,7 +94,7 @@ impl Size {
         Rough { value: factor * (load * self.reach).powf(power), sd }
     }
 
-    /// Friction of a joint at half of its speed \[Nm\].
+    /// Friction of a joint at half speed \[Nm\].
     pub(super) fn friction(&self, maker: Maker, joint: usize, dof: usize) -> Rough {
         let (share, sd) = FRICTION[Size::place(joint, dof)];
         let (factor, sd) = if maker == Maker::Abb { (1.0, sd) } else { OTHER_FRICTION };
@@ -108,42 +108,42 @@ impl Size {
         Rough { value: speed.to_radians() * size, sd }
     }
 
-    /// Torque that a joint has left to accelerate, over its largest torque: from the loads on the
-    /// foundations of five robots.
+    /// Share of the largest torque that accelerates a joint: from the foundation loads of five
+    /// robots.
     pub(super) fn acceleration_share(&self) -> f64 {
         (1.17 * (self.mass * self.reach).powf(-0.17)).min(1.0)
     }
 
-    /// Power of controller and drives without motion and without the coils of the brakes \[W\]: what
-    /// ABB publishes of an IRB120 (173 W with open brakes), an IRB1520ID (233 W) and an IRB140 (335 W),
-    /// with a slope that leads to the 400 W of a large robot.
+    /// Power of controller and drives without motion and brake coils \[W\]: from published values
+    /// of an IRB120 (173 W with released brakes), an IRB1520ID (233 W) and an IRB140 (335 W), with
+    /// a slope towards the 400 W of a large robot.
     pub(super) fn standby(&self) -> Rough {
         let open = 240.0 * (self.mass / 100.0).powf(0.15);
         Rough { value: open - self.coils().value, sd: 0.35 }
     }
 
-    /// Power of the coils of open brakes \[W\].
+    /// Power of the coils of released brakes \[W\].
     pub(super) fn coils(&self) -> Rough {
         Rough { value: 25.0 + 0.02 * self.mass, sd: 0.5 }
     }
 
-    /// Energy of a release of the brakes \[J\].
+    /// Energy of one brake release \[J\].
     pub(super) fn release(&self) -> Rough {
         Rough { value: 12.0 * (self.mass / 250.0).sqrt(), sd: 0.6 }
     }
 }
 
-/// Share of the variance of friction that all joints have in common.
+/// Share of the friction variance common to all joints.
 pub(super) fn common_friction(maker: Maker) -> f64 {
     COMMON_FRICTION[usize::from(maker == Maker::Other)]
 }
 
-/// Gear ratio of a joint of the speed `velocity` \[rad/s\].
+/// Gear ratio of a joint with the speed limit `velocity` \[rad/s\].
 pub(super) fn ratio(velocity: f64) -> Rough {
     Rough { value: MOTOR_SPEED / velocity, sd: RATIO_SD }
 }
 
-/// Inertia of a rotor \[kg m²\] of a motor with the largest torque `peak` \[Nm\].
+/// Rotor inertia \[kg m²\] of a motor with the peak torque `peak` \[Nm\].
 pub(super) fn rotor(peak: f64) -> Rough {
     Rough { value: 5.7e-5 * (peak / 4.1).powf(1.51), sd: ROTOR_SD }
 }
@@ -153,22 +153,22 @@ pub(super) fn loss(peak: f64) -> Rough {
     Rough { value: 4.0 * (peak / 10.0).powf(-1.4), sd: LOSS_SD }
 }
 
-/// Payload over the mass of the robot where it is not known: the middle of ABB's robots.
+/// Default ratio of payload to robot mass, typical of ABB robots.
 const PAYLOAD: f64 = 0.1;
 
-/// Payload of an arm of that mass (kg) and reach (m) \[kg\].
+/// Payload of an arm of this mass (kg) and reach (m) \[kg\].
 pub(super) fn payload(mass: Option<f64>, reach: f64) -> f64 {
-    // A robot of which nothing is known carries 10 kg at 1.4 m.
+    // Default: 10 kg at 1.4 m.
     mass.map_or(5.0 * reach * reach, |mass| PAYLOAD * mass).clamp(0.5, 1000.0)
 }
 
-/// Mass of an arm of that reach (m) and payload (kg) \[kg\]: of ABB's industrial robots, with a standard
-/// deviation of the logarithm of 0.39 over families. Others are lighter.
+/// Mass of an arm of this reach (m) and payload (kg) \[kg\]: from ABB's industrial robots, with a
+/// standard deviation of the logarithm of 0.39 over families. Other arms are lighter.
 pub(super) fn mass(reach: f64, payload: f64) -> f64 {
     113.0 * reach.powf(1.79) * (payload / 10.0).powf(0.26)
 }
 
-/// Deviation of the logarithm of that mass where the class of the robot is not known.
+/// Deviation of the logarithm of that mass for an unknown class of robot.
 pub(super) const MASS_BY_SIZE: f64 = 0.55;
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
-//! Bodies of an arm of which only the axes and the size are known.
+//! Links of an arm with known axes and size only.
 //!
-//! A gear or a tube weighs what the moment of all that it carries asks for: of the rest of the arm and
-//! of the payload. So masses follow from the way that is left to the flange. Drives are lumps at the
-//! bearings, tubes run between them. Constants are fitted to the meshes of 71 robots of ABB; how near the rule
-//! comes to them is in docs/robots.md.
+//! The mass of a gear or tube follows from the moment of what it carries, the outer arm and the
+//! payload, so it depends on the remaining path length to the flange. Drives are lumps at the
+//! bearings with tubes between them. Constants are fitted to the meshes of 71 ABB robots;
+//! docs/robots.md states the accuracy.
 
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 
@@ -11,34 +11,34 @@ use super::known::Shape;
 use super::rules::Size;
 use crate::arm::robot::geometry::Geometry;
 
-/// Where a bearing is between the two points of its axis that are nearest to its neighbours, and the
-/// same for the last one.
+/// Position of a bearing between the two points of its axis nearest to the neighbouring axes; and
+/// of the last one.
 const BEARING: [f64; 2] = [0.3, 0.5];
-/// Weight and power of a drive's lump.
+/// Factor and exponent of the lump of a drive.
 const DRIVE: (f64, f64) = (0.18, 0.8);
-/// Lump at the flange over that of a drive there, and the one of the foot.
+/// Lump at the flange relative to a drive there; lump of the foot.
 const FLANGE: f64 = 0.3;
 const FOOT: f64 = 0.02;
-/// Moment of the payload over its share of the total mass.
+/// Moment of the payload relative to its share of the total mass.
 const PAYLOAD: f64 = 2.85;
-/// A drive sits in the shorter of its two links; part of the arm's length below which both are short.
+/// A drive is in the shorter of its two links; share of the arm length below which both are short.
 const COMPACT: f64 = 0.05;
-/// Density of lumps and of tubes, hollows included \[kg/m³\].
+/// Density of lumps and tubes including hollows \[kg/m³\].
 const DENSITY: f64 = 1000.0;
-/// Feet are heavier than the meshes tell: of ten arms of KUKA that state their masses.
+/// Feet are heavier than meshes indicate: from ten KUKA arms with published masses.
 const MOVING: f64 = 0.96;
-/// Axes whose directions have less than this between them are parallel.
+/// Squared sine of the angle between axes below which they are parallel.
 const PARALLEL: f64 = 1e-6;
-/// Distances below this are none \[m\].
+/// Distances below this are zero \[m\].
 const SHORT: f64 = 1e-9;
 
 type Point = Vector3<f64>;
 
-/// The line of the arm at the angles 0, in the frame of its base.
+/// The line of the arm at joint angles 0, in the base frame.
 struct Line {
     /// Foot, bearings, flange \[m\].
     points: Vec<Point>,
-    /// Rotations of the joints' frames, and their origins \[m\].
+    /// Rotations and origins \[m\] of the joint frames.
     frames: Vec<(Matrix3<f64>, Point)>,
 }
 
@@ -80,7 +80,7 @@ fn projected((at, axis): &(Point, Unit<Point>), point: &Point) -> Point {
     at + axis.into_inner() * (point - at).dot(axis)
 }
 
-/// The point of a line that is nearest to another line; none where they are parallel.
+/// The point of a line nearest to another line; `None` if they are parallel.
 fn nearest((at, axis): &(Point, Unit<Point>), other: &(Point, Unit<Point>)) -> Option<Point> {
     let cross = axis.cross(&other.1);
     let square = cross.norm_squared();
@@ -88,13 +88,13 @@ fn nearest((at, axis): &(Point, Unit<Point>), other: &(Point, Unit<Point>)) -> O
         .then(|| at + axis.into_inner() * (other.0 - at).cross(&other.1).dot(&cross) / square)
 }
 
-/// A body in the frame of the base.
+/// A body in the base frame.
 struct Body {
     /// kg.
     mass: f64,
-    /// Its centre \[m\].
+    /// Centre of mass \[m\].
     at: Point,
-    /// About its centre \[kg m²\].
+    /// Inertia about the centre of mass \[kg m²\].
     inertia: Matrix3<f64>,
 }
 
@@ -103,7 +103,7 @@ fn sphere(mass: f64, at: Point) -> Body {
     Body { mass, at, inertia: Matrix3::identity() * (0.4 * mass * radius * radius) }
 }
 
-/// A tube in a link of the mass `link` along a way.
+/// A tube along `way` in a link of the mass `link`.
 fn tube(mass: f64, at: Point, way: &Point, link: f64) -> Body {
     let length = way.norm();
     let round = (3.0 * link / (4.0 * std::f64::consts::PI * DENSITY)).powf(2.0 / 3.0);
@@ -118,7 +118,7 @@ fn tube(mass: f64, at: Point, way: &Point, link: f64) -> Body {
     }
 }
 
-/// Path length from each bearing to the flange over that of the whole line, the foot first.
+/// Remaining path length from each point (foot first) to the flange over the whole length.
 fn ways(points: &[Point]) -> Vec<f64> {
     let mut left = vec![0.0; points.len()];
     for i in (0..points.len() - 1).rev() {
@@ -128,18 +128,18 @@ fn ways(points: &[Point]) -> Vec<f64> {
     left.iter().map(|way| way / whole).collect()
 }
 
-/// Least path length from the middle of a link to the flange over that of the whole line: a flange has a
-/// length, also where a file places it in the last joint.
+/// Smallest remaining path length from the middle of a link: a flange has a length even if a file
+/// places it in the last joint.
 const LEAST_WAY: f64 = 0.003;
 
-/// Path length from the middle of each link to the flange over that of the whole line: the outer links
-/// may be lighter or heavier together.
+/// Remaining path length from the middle of each link over the whole length, the basis of the
+/// common variation of outer links.
 pub(super) fn middles(geometry: &Geometry) -> Vec<f64> {
     let left = ways(&Line::new(geometry).points);
     left.windows(2).skip(1).map(|pair| (0.5 * (pair[0] + pair[1])).max(LEAST_WAY)).collect()
 }
 
-/// The links of an arm by their share of the mass that moves, and the mass of its foot \[kg\].
+/// The links of an arm with their shares of the moving mass, and the mass of its foot \[kg\].
 pub(super) fn shapes(geometry: &Geometry, size: Size) -> (Vec<Shape>, f64) {
     let line = Line::new(geometry);
     let points = &line.points;
@@ -149,7 +149,7 @@ pub(super) fn shapes(geometry: &Geometry, size: Size) -> (Vec<Shape>, f64) {
     let far = (2.0 * size.reach.powi(2) / size.mass).min(0.15);
     let segment = |i: usize| left[i] - left[i + 1];
     let drive = |way: f64| DRIVE.0 * ((way + far) * (way + load)).powf(DRIVE.1);
-    // Of each link: lump at its bearing, tube, lump at the next bearing.
+    // Per link: lump at its bearing, tube, lump at the next bearing.
     let mut parts = vec![[0.0; 3]; count];
     parts[0][0] = FOOT;
     for j in 1..count {

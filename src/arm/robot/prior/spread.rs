@@ -1,4 +1,4 @@
-//! The spread of a model's numbers, and draws of plausible robots.
+//! The prior of the numbers of a model, and draws of plausible robots.
 
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -11,59 +11,59 @@ use crate::arm::robot::error::RobotError;
 use crate::arm::robot::link::Link;
 use crate::arm::robot::model::Model;
 
-/// Draws start here.
+/// Seed of the draws.
 const SEED: u64 = 27;
 
-/// The prior of a model's numbers.
+/// The prior of the numbers of a model.
 #[derive(Clone, Debug)]
 pub struct Spread {
-    /// What is not known, each independent of the others.
+    /// Independent unknowns.
     pub latents: Vec<Latent>,
-    /// Whether the masses of the links add up to a sum that is known better.
+    /// Whether the sum of the link masses is known better than each.
     shared_mass: bool,
 }
 
-/// Robots that are as plausible as the model.
+/// Draws of plausible robots.
 #[derive(Clone, Debug)]
 pub struct Draws {
-    /// The latent numbers: `[latent][draw]`.
+    /// The latent variables: `[latent][draw]`.
     pub latents: Vec<Vec<f64>>,
     /// The robots.
     pub robots: Vec<Plausible>,
 }
 
-/// What differs from the model in a plausible robot.
+/// The numbers of a plausible robot that may differ from the model.
 #[derive(Clone, Debug)]
 pub struct Plausible {
-    /// Bodies in the joints' frames.
+    /// Links in the joint frames.
     pub links: Vec<Link>,
-    /// Nm.
+    /// Coulomb friction \[Nm\].
     pub coulomb: Vec<f64>,
-    /// Nm s/rad.
+    /// Viscous friction \[Nm s/rad\].
     pub viscous: Vec<f64>,
     /// Inertia of the rotors at the joints \[kg m²\].
     pub rotors: Vec<f64>,
     /// Copper loss over squared torque at the joints \[W/(Nm)²\].
     pub loss: Vec<f64>,
-    /// W.
+    /// Base power \[W\].
     pub base_w: f64,
-    /// Power of the coils of open brakes \[W\].
+    /// Power of the coils of released brakes \[W\].
     pub coils_w: f64,
-    /// J.
+    /// Energy of one brake release \[J\].
     pub release_j: f64,
-    /// Torques of springs over those of the model.
+    /// Spring torques relative to those of the model.
     pub spring: f64,
 }
 
 impl Spread {
-    /// The spread of a model with dynamics, by the provenance of its numbers and the deviations that
-    /// it states.
+    /// The prior of a model with dynamics, from the provenance and the stated deviations of its
+    /// numbers.
     #[must_use]
     pub fn new(model: &Model) -> Spread {
         Spread { latents: latents(model), shared_mass: has_shared_mass(model) }
     }
 
-    /// `count` plausible robots, the same each time; of a calibrated robot the draws of its calibration.
+    /// `count` plausible robots, reproducible; for a calibrated robot the draws of its calibration.
     #[must_use]
     pub fn draws(&self, model: &Model, count: usize) -> Draws {
         let latents = match &model.calibration {
@@ -78,7 +78,7 @@ impl Spread {
         Draws { latents, robots }
     }
 
-    /// The draws of a calibration; latent numbers that it does not name are 0.
+    /// The draws of a calibration; latent variables that it does not name are 0.
     fn calibrated(&self, calibration: &Calibration) -> Vec<Vec<f64>> {
         let draws_of = |latent: &Latent| {
             let found = calibration.draws.iter().find(|(name, _)| *name == latent.name);
@@ -87,7 +87,7 @@ impl Spread {
         self.latents.iter().map(draws_of).collect()
     }
 
-    /// The robot at these latent numbers.
+    /// The robot at these latent variables.
     pub fn robot(&self, model: &Model, z: impl Fn(usize) -> f64) -> Plausible {
         let dof = model.links.len();
         let mut robot = Plausible::nominal(model);
@@ -134,10 +134,10 @@ impl Spread {
     }
 }
 
-/// Checks that a calibration belongs to the robot: the spread has all latent numbers that it names.
+/// Checks that a calibration belongs to the robot: all its latent variables exist.
 ///
 /// # Errors
-/// It lacks one.
+/// A latent variable is missing.
 pub fn check_calibration(model: &Model) -> Result<(), RobotError> {
     let Some(calibration) = &model.calibration else { return Ok(()) };
     let known: Vec<String> = Spread::new(model).latents.into_iter().map(|l| l.name).collect();
@@ -152,11 +152,10 @@ pub fn check_calibration(model: &Model) -> Result<(), RobotError> {
     }
 }
 
-/// Standard deviation of a logarithm beyond which nothing is known.
+/// Largest standard deviation of a logarithm.
 const UNKNOWN: f64 = 3.0;
 
-/// Checks the standard deviations: with one of many times its figure, means over robots do not
-/// converge.
+/// Checks the standard deviations: with very large ones, means over robots do not converge.
 ///
 /// # Errors
 /// One is too large.
@@ -180,7 +179,7 @@ pub fn check_deviations(model: &Model) -> Result<(), RobotError> {
 }
 
 impl Plausible {
-    /// The model with these numbers; its effects have to be applied again (`effects::applied`).
+    /// The model with these numbers; its effects must be applied again (`effects::applied`).
     #[must_use]
     pub fn applied(&self, model: &Model) -> Model {
         let mut new = model.clone();

@@ -1,4 +1,4 @@
-//! The moving bodies: the links behind a moving joint, up to the next one.
+//! The moving bodies: links between one moving joint and the next.
 
 use nalgebra::{Isometry3, Matrix3, SymmetricEigen, Vector3};
 
@@ -8,10 +8,10 @@ use super::elements::{Inertial, Kind, Link};
 use crate::arm::robot::error::RobotError;
 use crate::arm::robot::link;
 
-/// One body for each joint of the chain; none where no moving link states its inertia.
+/// One body per joint of the chain; empty if no moving link states its inertia.
 ///
 /// # Errors
-/// A mass or an inertia that no body has, or some moving bodies have none.
+/// An impossible mass or inertia, or some moving bodies without one.
 pub(super) fn merged(
     document: &Document,
     chain: &Chain<'_>,
@@ -40,8 +40,7 @@ pub(super) fn merged(
     Ok(links)
 }
 
-/// What is fixed to a link, in the link's frame; `None` where nothing of it states its
-/// inertia.
+/// The body of all links fixed to a link, in its frame; `None` if none states its inertia.
 fn body(document: &Document, link: &str) -> Result<Option<link::Link>, RobotError> {
     let mut sum: Option<link::Link> = None;
     let mut open = vec![(link.to_owned(), Isometry3::identity())];
@@ -60,12 +59,12 @@ fn body(document: &Document, link: &str) -> Result<Option<link::Link>, RobotErro
     Ok(sum)
 }
 
-/// The body that a link states, in the link's frame.
+/// The stated body of a link, in the link frame.
 fn stated(document: &Document, link: &Link) -> Result<Option<link::Link>, RobotError> {
     let Some(Inertial { placement, mass, inertia }) = &link.inertial else { return Ok(None) };
     let fail = |message: String| Err(document.error(link.line, message));
     let least = SymmetricEigen::new(*inertia).eigenvalues.min();
-    // Small parts are given an inertia of zero: a point.
+    // Zero inertia is accepted: a point mass for small parts.
     if *inertia != Matrix3::zeros() && least <= 0.0 {
         return fail(format!(
             "the inertia of link \"{}\" is not positive definite (a principal moment is {least:.3e} \

@@ -7,16 +7,16 @@ use super::elements::{Joint, Kind, Link};
 use crate::arm::robot::error::RobotError;
 use crate::arm::robot::geometry::MAX_DOF;
 
-/// Links that may be the end of the chain, the first that is there.
+/// End links of the chain in order of preference.
 const ENDS: [&str; 2] = ["tool0", "flange"];
 
-/// The moving joints with what is fixed between them.
+/// The moving joints with the fixed transformations between them.
 pub(super) struct Chain<'d> {
     /// Moving joints from the root on.
     pub(super) joints: Vec<&'d Joint>,
-    /// Placement of each in the frame of the moving joint before it.
+    /// Placement of each in the frame of the previous moving joint.
     pub(super) placements: Vec<Isometry3<f64>>,
-    /// The end in the last moving joint's frame.
+    /// The end link in the frame of the last moving joint.
     pub(super) flange: Isometry3<f64>,
 }
 
@@ -58,7 +58,7 @@ impl<'d> Chain<'d> {
     }
 }
 
-/// The link that is no joint's child; every other one is exactly one's.
+/// The only link without a parent joint; all others must have exactly one.
 fn root(document: &Document) -> Result<&Link, RobotError> {
     for joint in &document.joints {
         for link in [&joint.parent, &joint.child] {
@@ -95,8 +95,7 @@ fn root(document: &Document) -> Result<&Link, RobotError> {
         );
         return Err(document.error(other.line, message));
     }
-    // Every link has one parent and there is one root: links that cannot be reached form
-    // a loop of their own.
+    // Each link has one parent and there is one root, so unreached links form a loop.
     let mut reached = vec![root.name.as_str()];
     let mut next = 0;
     while next < reached.len() {
@@ -115,7 +114,7 @@ fn root(document: &Document) -> Result<&Link, RobotError> {
     Ok(root)
 }
 
-/// The joints from the root to the end.
+/// The joints from the root to the end link.
 fn path<'d>(document: &'d Document, root: &str) -> Result<Vec<&'d Joint>, RobotError> {
     let up = |link: &str| {
         let mut path = Vec::new();
@@ -130,7 +129,7 @@ fn path<'d>(document: &'d Document, root: &str) -> Result<Vec<&'d Joint>, RobotE
     if let Some(end) = ENDS.into_iter().find(|end| document.link(end).is_some()) {
         return Ok(up(end));
     }
-    // The last moving joint that no other moves.
+    // The moving joint of largest depth.
     let moves = |joint: &&&Joint| joint.kind != Kind::Fixed;
     let depth = |joint: &Joint| up(&joint.child).iter().filter(moves).count();
     let moving: Vec<&Joint> = document.joints.iter().filter(|j| moves(&j)).collect();
@@ -145,7 +144,7 @@ fn path<'d>(document: &'d Document, root: &str) -> Result<Vec<&'d Joint>, RobotE
             Err(document.error(b.line, message))
         }
         (Some(only), None) => {
-            // Along what is fixed to it, as long as there is one way.
+            // Continue along fixed joints while the continuation is unique.
             let mut end = only.child.as_str();
             loop {
                 let mut next = document.joints_of(end);
@@ -184,7 +183,7 @@ fn is_no_mimic(document: &Document, joint: &Joint) -> Result<(), RobotError> {
     Err(document.error(joint.line, message))
 }
 
-/// A joint that is not of the chain may not move any mass.
+/// Checks that a joint outside the chain moves no mass.
 fn beside(document: &Document, chain: &Chain<'_>, joint: &Joint) -> Result<(), RobotError> {
     is_no_mimic(document, joint)?;
     let of_chain = chain.joints.iter().any(|own| own.name == joint.name);

@@ -1,4 +1,4 @@
-//! A URDF as its links, joints and gear ratios, with the line of each.
+//! A URDF as links, joints and gear ratios with their lines.
 
 use std::collections::BTreeMap;
 
@@ -10,13 +10,13 @@ use crate::arm::robot::error::RobotError;
 /// Deepest nesting of elements; a URDF needs five.
 const MAX_DEPTH: usize = 64;
 
-/// The parts of a URDF that a robot is made of.
+/// The used parts of a URDF.
 pub(super) struct Document {
     pub(super) file: String,
     pub(super) name: String,
     pub(super) links: Vec<Link>,
     pub(super) joints: Vec<Joint>,
-    /// Gear ratio by the name of the joint.
+    /// Gear ratio by joint name.
     pub(super) reductions: BTreeMap<String, f64>,
 }
 
@@ -116,14 +116,14 @@ fn error(file: &str, line: usize, message: String) -> RobotError {
     RobotError::Urdf { place: format!("{file}:{line}"), message }
 }
 
-/// An error where a link or joint of that name was read before, in line `first`.
+/// An error if a link or joint of that name was read before, in line `first`.
 fn is_first<'a, 'i>(node: Node<'a, 'i>, first: Option<usize>) -> Result<(), Wrong<'a, 'i>> {
     let Some(first) = first else { return Ok(()) };
     let (tag, name) = (node.tag_name().name(), node.attribute("name").unwrap_or_default());
     Err((node, format!("a second {tag} \"{name}\", the first is in line {first}; rename one")))
 }
 
-/// Joint and gear ratio of a transmission: the ratio stands in the actuator, or in the joint.
+/// Joint and gear ratio of a transmission; the ratio is in the actuator or in the joint.
 fn reduction<'a, 'i>(node: Node<'a, 'i>) -> Result<Option<(&'a str, f64)>, Wrong<'a, 'i>> {
     let reduces =
         |node: &Node<'_, '_>| node.tag_name().name().eq_ignore_ascii_case("mechanicalReduction");
@@ -142,7 +142,7 @@ fn reduction<'a, 'i>(node: Node<'a, 'i>) -> Result<Option<(&'a str, f64)>, Wrong
     }
 }
 
-/// The line at which elements are nested too deep: the XML parser recurses over them.
+/// The line at which elements are nested too deep for the recursive XML parser.
 fn too_deep(text: &str) -> Option<usize> {
     let bytes = text.as_bytes();
     let mut depth = 0_usize;

@@ -1,26 +1,25 @@
-//! The elements `<link>` and `<joint>`: their attributes are checked to be there, finite, and of a
-//! plausible size.
+//! The elements `<link>` and `<joint>`. Attributes must exist, be finite and have a plausible size.
 
 use nalgebra::{Isometry3, Matrix3, Quaternion, UnitQuaternion, Vector3};
 use roxmltree::Node;
 
 use crate::arm::robot::link::symmetric;
 
-/// No part of a robot lies farther from another \[m\]: beyond are millimetres.
+/// Largest distance between parts of a robot \[m\]; larger values are in millimetres.
 const FARTHEST: f64 = 50.0;
-/// No angle of a placement is larger \[rad\]: beyond are degrees.
+/// Largest angle of a placement \[rad\]; larger values are in degrees.
 const LARGEST_ANGLE: f64 = 13.0;
-/// No joint turns farther \[rad\] unless it is endless: beyond are degrees.
+/// Largest bound of a joint that is not endless \[rad\]; larger values are in degrees.
 const FARTHEST_TURN: f64 = 50.0;
-/// Ranges beyond this stand for endless joints \[rad\].
+/// Smallest bound of endless joints \[rad\].
 const ENDLESS: f64 = 600.0;
-/// No body weighs more \[kg\].
+/// Largest mass of a body \[kg\].
 const HEAVIEST: f64 = 1e5;
-/// Versions of URDF that brought quaternions, and accelerations with other defaults of limits.
+/// First URDF versions with quaternions, and with accelerations and other default limits.
 const WITH_QUATERNIONS: (u32, u32) = (1, 1);
 const WITH_ACCELERATIONS: (u32, u32) = (1, 2);
 
-/// A wrong attribute: the element, and what is wrong with it and the way out.
+/// A wrong attribute: its element, and the error with a remedy.
 pub(super) type Wrong<'a, 'i> = (Node<'a, 'i>, String);
 
 /// A `<link>`.
@@ -32,7 +31,7 @@ pub(super) struct Link {
 
 /// An `<inertial>`: a body about its centre of mass.
 pub(super) struct Inertial {
-    /// Centre and axes of the inertia in the link's frame.
+    /// Centre of mass and inertia axes in the link frame.
     pub(super) placement: Isometry3<f64>,
     /// kg.
     pub(super) mass: f64,
@@ -46,7 +45,7 @@ pub(super) enum Kind {
     Revolute,
     Continuous,
     Fixed,
-    /// One that is not modelled.
+    /// Not modelled.
     Other,
 }
 
@@ -55,10 +54,10 @@ pub(super) struct Joint {
     pub(super) name: String,
     pub(super) line: usize,
     pub(super) kind: Kind,
-    /// Names of the links.
+    /// Names of the parent and child links.
     pub(super) parent: String,
     pub(super) child: String,
-    /// The child's frame in the parent's at angle 0.
+    /// The child frame in the parent frame at angle 0.
     pub(super) placement: Isometry3<f64>,
     pub(super) axis: [f64; 3],
     pub(super) limit: Limit,
@@ -68,7 +67,7 @@ pub(super) struct Joint {
     pub(super) is_mimic: bool,
 }
 
-/// A `<limit>` \[rad, s, Nm\]; a rate or torque of 0 or infinity is not known.
+/// A `<limit>` \[rad, s, Nm\]; 0 or infinity means unknown.
 pub(super) struct Limit {
     pub(super) range: [f64; 2],
     pub(super) effort: f64,
@@ -82,12 +81,12 @@ pub(super) fn line(node: Node<'_, '_>) -> usize {
     node.document().text_pos_at(node.range().start).row as usize
 }
 
-/// The first child of a name.
+/// The first child with a tag.
 pub(super) fn child<'a, 'i>(node: Node<'a, 'i>, tag: &str) -> Option<Node<'a, 'i>> {
     node.children().find(|child| child.tag_name().name() == tag)
 }
 
-/// Reads a link; shapes are left out.
+/// Reads a link without its shapes.
 pub(super) fn read_link<'a, 'i>(link: Node<'a, 'i>) -> Result<Link, Wrong<'a, 'i>> {
     let name = name(link)?;
     let is_nameless = |node: &Node<'_, '_>| {
@@ -228,7 +227,7 @@ fn read_limit<'a, 'i>(joint: Node<'a, 'i>) -> Result<Limit, Wrong<'a, 'i>> {
     Ok(limit)
 }
 
-/// The version of the URDF; 1.0 where it does not say.
+/// The URDF version; default 1.0.
 fn version(node: Node<'_, '_>) -> (u32, u32) {
     let text = node.document().root_element().attribute("version").unwrap_or_default();
     let parts = text.trim().split_once('.');
@@ -242,7 +241,7 @@ fn name<'a, 'i>(node: Node<'a, 'i>) -> Result<String, Wrong<'a, 'i>> {
     }
 }
 
-/// The `<origin>` of the element `within`, which is `whose` or a part of it.
+/// The `<origin>` of the element `within`, a part of `whose`.
 fn placement<'a, 'i>(
     whose: Node<'a, 'i>,
     within: Node<'a, 'i>,
@@ -283,7 +282,7 @@ fn placement<'a, 'i>(
     Ok(Isometry3::from_parts(Vector3::from(xyz).into(), rotation))
 }
 
-/// Finite numbers of an attribute, where it is there.
+/// Finite numbers of an attribute, if present.
 fn vector<'a, 'i, const N: usize>(
     whose: Node<'a, 'i>,
     node: Node<'a, 'i>,

@@ -1,7 +1,7 @@
-//! URDF files: the chain from the root to the flange, as the text of a Robot TOML.
+//! URDF files: the chain from the root to the flange as Robot TOML text.
 //!
-//! Fixed joints are merged: their transformations into the joints behind them, the
-//! masses behind them into the moving body that they are fixed to.
+//! Fixed joints are merged: their transformations into the next joints, their masses into the
+//! moving bodies that carry them.
 
 mod bodies;
 mod chain;
@@ -13,10 +13,10 @@ use super::error::RobotError;
 use chain::Chain;
 use document::Document;
 
-/// The Robot TOML of a URDF; `file` names it in messages and as the source.
+/// The Robot TOML of a URDF; `file` is its name in messages and as source.
 ///
 /// # Errors
-/// What a [`Model`](super::Model) cannot be made of, with its line.
+/// An element that a [`Model`](super::Model) cannot represent, with its line.
 pub fn import_urdf(file: &str, text: &str) -> Result<String, RobotError> {
     let document = Document::read(file, text)?;
     let chain = Chain::find(&document)?;

@@ -10,7 +10,7 @@ use crate::arm::robot::error::RobotError;
 use crate::arm::robot::link::Link;
 use crate::arm::robot::toml_text::{list, pose, quoted};
 
-/// Range of a joint without limits \[rad\]: a hundred turns to either side.
+/// Range of a joint without limits \[rad\]: 100 turns to either side.
 const CONTINUOUS: f64 = 100.0 * TAU;
 
 pub(super) fn toml(
@@ -66,7 +66,7 @@ fn limits(document: &Document, chain: &Chain<'_>, text: &mut String) -> Result<(
     let figures = |figure: fn(&Limit) -> f64| -> Vec<f64> {
         chain.joints.iter().map(|joint| figure(&joint.limit)).collect()
     };
-    // 0 and no limit stand for what is not known.
+    // 0 or no limit means unknown.
     for (key, values) in [
         ("velocity", figures(|limit| limit.velocity)),
         ("acceleration", figures(|limit| limit.acceleration)),

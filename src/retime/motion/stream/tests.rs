@@ -2,10 +2,10 @@
 
 use super::*;
 
-/// Rounding of sums of a few dozen terms of order one.
+/// Rounding tolerance of sums of a few dozen terms of order one.
 const ROUNDING: f64 = 1e-12;
 
-/// A stream with irregular intervals; joint 2 rests.
+/// A stream with irregular intervals; joint 2 is at rest.
 fn irregular(n: usize) -> Stream {
     let wave = |i: usize, j: usize| {
         let x = i as f64;

@@ -1,7 +1,6 @@
-//! A path and the dynamics along it as plain numbers on a grid.
+//! A path and its dynamics as numbers on a grid.
 //!
-//! On a path q(s) with ṡ² = b and s̈ = u, joint j moves with q̇ = q' √b, q̈ = q' u + q'' b and needs
-//! the torque
+//! On a path q(s) with ṡ² = b and s̈ = u, joint j has q̇ = q' √b, q̈ = q' u + q'' b and the torque
 //!
 //! τ = m u + c b + g + fᶜ sgn(q') + fᵛ q' √b,
 //!
@@ -10,16 +9,16 @@
 use super::row::Row;
 use crate::retime::motion::stream::Joints;
 
-/// Fewest intervals of a path that starts and ends at rest: one cannot move from 0 to 0.
+/// Fewest intervals of a path from rest to rest: on one interval the speed stays 0.
 pub const MIN_INTERVALS: usize = 2;
 
-/// Rows of a place for the acceleration of the TCP at most.
+/// Largest number of TCP acceleration rows of a point.
 pub const TCP_ROWS: usize = 5;
 
-/// Why numbers do not make a path grid.
+/// Error in the values of a path grid.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum GridError {
-    /// Numbers of nodes and intervals do not fit, or are too few.
+    /// The numbers of nodes and intervals do not match, or are too small.
     #[error(
         "a path grid with {nodes} nodes has {intervals} intervals; give at least {MIN_INTERVALS} \
          and one node more"
@@ -47,7 +46,7 @@ pub enum GridError {
     },
 }
 
-/// The path and the dynamics at one place, seen from one side.
+/// The path and the dynamics at one point, on one side of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathPoint {
     /// Joint positions, rad.
@@ -62,23 +61,23 @@ pub struct PathPoint {
     pub c: Joints,
     /// Gravity torque, Nm.
     pub g: Joints,
-    /// Coulomb friction `f_C` sgn(q'), Nm. The sign is that of the side.
+    /// Coulomb friction `f_C` sgn(q'), Nm, with the sign of this side.
     pub coulomb: Joints,
     /// Viscous friction per ṡ, `f_v` q', Nm.
     pub viscous: Joints,
-    /// Acceleration that each joint can have here, in units of its limit.
+    /// Acceleration capability of each joint at this pose, in units of its limit.
     pub capability: Joints,
-    /// Share of the acceleration limit that each joint needs at rest: gravity.
+    /// Share of the acceleration limit that gravity takes at rest.
     pub bias: Joints,
-    /// Limits on the acceleration of the TCP; rows of zeros are none.
+    /// Limits on the TCP acceleration; unused rows are zero.
     pub tcp_rows: [Row; TCP_ROWS],
     /// Bound on ṡ from joint and TCP speeds; positive and finite.
     pub v_max: f64,
-    /// Where that bound comes from.
+    /// Source of that bound.
     pub v_bound: SpeedBound,
 }
 
-/// What bounds the speed at a place.
+/// Source of a speed bound.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SpeedBound {
     /// None.
@@ -90,15 +89,14 @@ pub enum SpeedBound {
     Reorientation,
     /// The largest speed of a joint.
     Joint,
-    /// The robot's largest TCP speed.
+    /// The TCP speed limit of the robot.
     Robot,
     /// A zone that takes at least one step of the interpolator.
     Zone,
 }
 
 impl PathPoint {
-    /// A place without dynamics: all torques are zero, the acceleration limits are everywhere the
-    /// same.
+    /// A point without dynamics: zero torques and uniform acceleration limits.
     pub fn kinematic(q: Joints, q1: Joints, q2: Joints, v_max: f64) -> PathPoint {
         let zero = Joints::default();
         let (m, c, g, coulomb, viscous, bias) = (zero, zero, zero, zero, zero, zero);
@@ -132,7 +130,7 @@ impl PathPoint {
         std::array::from_fn(|j| self.coulomb[j] + self.viscous[j] * v)
     }
 
-    /// The place at the share `x` of the way to `other`, with linear coefficients.
+    /// Linear interpolation to `other` at the share `x`.
     pub(crate) fn toward(&self, other: &PathPoint, x: f64) -> PathPoint {
         let mix = |from: &Joints, to: &Joints| -> Joints {
             std::array::from_fn(|j| from[j] + x * (to[j] - from[j]))
@@ -173,7 +171,7 @@ impl PathPoint {
 }
 
 /// A path from rest to rest on nodes s₀ < … < sₙ. Each interval has its own values at both ends,
-/// since q'' jumps where segments meet and sgn(q') where a joint turns.
+/// since q'' jumps between segments and sgn(q') at a reversal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PathGrid {
     s: Vec<f64>,
@@ -181,11 +179,10 @@ pub struct PathGrid {
 }
 
 impl PathGrid {
-    /// The grid with the nodes `s` (N + 1, any unit) and the values at begin and end of each of
-    /// the N intervals.
+    /// The grid with the nodes `s` (N + 1, any unit) and the values at both ends of N intervals.
     ///
     /// # Errors
-    /// Lengths that do not fit, s that does not rise, values that are not finite.
+    /// Lengths that do not match, s that does not rise, values that are not finite.
     pub fn new(s: Vec<f64>, ends: Vec<[PathPoint; 2]>) -> Result<PathGrid, GridError> {
         if ends.len() < MIN_INTERVALS || s.len() != ends.len() + 1 {
             return Err(GridError::Lengths { nodes: s.len(), intervals: ends.len() });
@@ -212,8 +209,8 @@ impl PathGrid {
         PathGrid::new(s, nodes.windows(2).map(|w| [w[0], w[1]]).collect())
     }
 
-    /// The same path with each bound on ṡ extended to both sides, by the way passed in `time` (s) at
-    /// that bound plus `distance`. A profile that is smoothed over time then keeps the bounds.
+    /// The same path with each bound on ṡ extended to both sides by `distance` plus the distance
+    /// of `time` (s) at that bound, so that a profile smoothed over time keeps the bounds.
     pub(crate) fn holding(&self, time: f64, distance: f64) -> PathGrid {
         let bounds: Vec<(f64, f64, f64)> = self
             .ends
@@ -225,7 +222,7 @@ impl PathGrid {
         let mut held = self.clone();
         for (k, pair) in held.ends.iter_mut().enumerate() {
             for (end, s) in pair.iter_mut().zip(&self.s[k..k + 2]) {
-                // Slightly more: with round figures nodes lie exactly at the reach.
+                // Slightly more: with round numbers a node may lie exactly at the reach.
                 let near = bounds.iter().filter(|(at, _, reach)| (at - s).abs() <= reach * 1.001);
                 end.v_max = near.map(|(_, v, _)| *v).fold(end.v_max, f64::min);
             }
@@ -233,8 +230,8 @@ impl PathGrid {
         held
     }
 
-    /// The same path with other dry friction: `change` is handed the index of each interval and its
-    /// ends, and returns that of both, finite.
+    /// The same path with other Coulomb friction: `change` takes the index of an interval and its
+    /// ends and returns the friction at both ends.
     pub(crate) fn with_dry_friction(
         mut self,
         mut change: impl FnMut(usize, &[PathPoint; 2]) -> [Joints; 2],
@@ -263,7 +260,7 @@ impl PathGrid {
         &self.s
     }
 
-    /// The values at begin and end of each interval.
+    /// The values at both ends of each interval.
     pub fn ends(&self) -> &[[PathPoint; 2]] {
         &self.ends
     }
@@ -283,7 +280,7 @@ impl PathGrid {
         self.s[k + 1] - self.s[k]
     }
 
-    /// Largest ṡ² at node k that both sides allow.
+    /// Largest ṡ² at a node under the bounds of both sides.
     pub fn b_max(&self, node: usize) -> f64 {
         let after = self.ends.get(node).map_or(f64::INFINITY, |pair| pair[0].v_max);
         let before = if node == 0 { f64::INFINITY } else { self.ends[node - 1][1].v_max };

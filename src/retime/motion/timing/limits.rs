@@ -1,13 +1,13 @@
 //! Limits along a path as rows |α u + β b + γ √b + κ| ≤ 1 in u = s̈ and b = ṡ².
 //!
-//! Rows hold at **both** ends of each interval of a grid: collocation at one end leaves torque
-//! over its limit between the nodes.
+//! Rows hold at **both** ends of each interval: with collocation at one end the torque exceeds its
+//! limit between the nodes.
 
 use super::grid::{PathGrid, PathPoint};
 use super::row::Row;
 use crate::retime::motion::stream::{DOF, Joints};
 
-/// Largest |q̈| and |τ| of each joint. Infinite where there is no limit.
+/// Largest |q̈| and |τ| of each joint; infinite without a limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathLimits {
     acceleration: Joints,
@@ -51,7 +51,7 @@ impl PathLimits {
     }
 }
 
-/// Bound on |u| that a row of the acceleration of a joint is, where b is at most `b_max`.
+/// Bound on |u| from the acceleration row of a joint for b ≤ `b_max`.
 fn acceleration_bound(row: &Row, b_max: f64) -> f64 {
     (1.0 + row.constant.abs() + row.b.abs() * b_max) / row.u.abs()
 }
@@ -71,15 +71,15 @@ fn torque_row(point: &PathPoint, limits: &PathLimits, j: usize) -> Row {
     }
 }
 
-/// The rows of one place; limits that are infinite and rows that are zero are left out.
+/// The rows of one point without infinite limits and zero rows.
 pub(crate) fn rows(point: &PathPoint, limits: &PathLimits) -> impl Iterator<Item = Row> {
     let joints = (0..DOF)
         .flat_map(move |j| [acceleration_row(point, limits, j), torque_row(point, limits, j)]);
     joints.chain(point.tcp_rows).filter(|row| *row != Row::default())
 }
 
-/// Hands `take` the rows of one place that a profile within the others can reach, where b is at
-/// most `b_max`.
+/// Calls `take` with the rows of one point that a profile within the acceleration rows can violate,
+/// for b ≤ `b_max`.
 pub(crate) fn binding_rows(
     point: &PathPoint,
     limits: &PathLimits,
@@ -88,7 +88,7 @@ pub(crate) fn binding_rows(
 ) {
     let accelerations: [Row; DOF] = std::array::from_fn(|j| acceleration_row(point, limits, j));
     let bounds = accelerations.iter().map(|row| acceleration_bound(row, b_max));
-    // Slightly more, for the tolerance of the solver.
+    // With a reserve for the tolerance of the solver.
     let u_max = bounds.fold(f64::INFINITY, f64::min) * 1.001;
     let root = b_max.sqrt();
     let mut see = |row: &Row| {
@@ -101,7 +101,7 @@ pub(crate) fn binding_rows(
     point.tcp_rows.iter().for_each(see);
 }
 
-/// What a row limits.
+/// The limited quantity of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum RowKind {
     Acceleration,
@@ -109,7 +109,7 @@ pub(crate) enum RowKind {
     Tcp,
 }
 
-/// The kind of the row that the profile b uses most on interval k.
+/// The kind of the most used row of the profile b on interval k.
 pub(crate) fn tightest_row(
     grid: &PathGrid,
     limits: &PathLimits,
@@ -136,9 +136,8 @@ pub(crate) fn tightest_row(
     tightest.1
 }
 
-/// The largest share of a limit that the profile b (one per node) uses at the ends of the
-/// intervals: of joint acceleration and torque, and b of its bound. Infinite if b has another
-/// number of nodes.
+/// The largest used share of a limit of the profile b (one per node) at the ends of the intervals:
+/// joint accelerations, torques, TCP accelerations and b. Infinite if the number of nodes differs.
 pub fn worst_ratio(grid: &PathGrid, limits: &PathLimits, b: &[f64]) -> f64 {
     if b.len() != grid.s().len() {
         return f64::INFINITY;
@@ -154,7 +153,7 @@ pub fn worst_ratio(grid: &PathGrid, limits: &PathLimits, b: &[f64]) -> f64 {
     worst
 }
 
-/// The largest share of a limit on accelerations and torques that u and b use at a place.
+/// The largest used share of the acceleration and torque limits of a point at u and b.
 fn ratio(point: &PathPoint, limits: &PathLimits, u: f64, b: f64) -> f64 {
     let v = b.sqrt();
     let joints = (0..DOF).map(|j| {

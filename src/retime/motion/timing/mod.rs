@@ -1,6 +1,5 @@
-//! Timing on a fixed path: the problem as plain arrays, and its fastest solution.
-//!
-//! Constraints know no solver, solvers know no robot.
+//! Timing on a fixed path: the problem as plain arrays and its fastest solution. Limits are
+//! independent of solvers, solvers of robots.
 
 pub mod grid;
 pub mod limits;

@@ -3,7 +3,7 @@
 //! Between two nodes the path acceleration u = (b₁ − b₀)/(2 Δs) is constant, so the time of an
 //! interval is 2 Δs/(√b₀ + √b₁).
 
-/// A profile with the times at which it passes the nodes.
+/// A profile with the times at the nodes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
     s: Vec<f64>,
@@ -14,17 +14,17 @@ pub struct Profile {
 /// One interval of a profile, which has constant path acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProfilePiece {
-    /// ṡ at the begin.
+    /// ṡ at the start.
     pub speed: f64,
     /// s̈.
     pub acceleration: f64,
-    /// Length of time, s.
+    /// Duration, s.
     pub duration: f64,
 }
 
 impl Profile {
     /// The profile with `b` = ṡ² at the nodes `s`. None if lengths differ, there are fewer than
-    /// two nodes, a value is negative or not finite, or the motion stands still on an interval.
+    /// two nodes, a value is negative or not finite, or both ends of an interval are at rest.
     pub fn new(s: Vec<f64>, b: Vec<f64>) -> Option<Profile> {
         let positive = b.iter().all(|x| x.is_finite() && *x >= 0.0);
         if s.len() != b.len() || s.len() < 2 || !positive {
@@ -54,7 +54,7 @@ impl Profile {
         &self.t
     }
 
-    /// The time of the whole path, s.
+    /// Duration of the whole path, s.
     pub fn duration(&self) -> f64 {
         self.t[self.t.len() - 1]
     }
@@ -72,8 +72,8 @@ impl Profile {
         (0..self.s.len() - 1).map(|k| self.piece(k))
     }
 
-    /// (s, ṡ, s̈) at the time `t` (s); at rest before the begin and after the end. At a node the
-    /// acceleration is that of the later interval.
+    /// (s, ṡ, s̈) at the time `t` (s), clamped to the duration. At a node the acceleration is that
+    /// of the later interval.
     pub fn at(&self, t: f64) -> (f64, f64, f64) {
         let last = self.s.len() - 1;
         if t >= self.duration() {
@@ -85,7 +85,7 @@ impl Profile {
         self.in_interval(self.t.partition_point(|node| *node <= t) - 1, t)
     }
 
-    /// (s, ṡ, s̈) at the time `t` (s), which lies in the interval k.
+    /// (s, ṡ, s̈) at the time `t` (s) within interval k.
     pub(crate) fn in_interval(&self, k: usize, t: f64) -> (f64, f64, f64) {
         let (piece, tau) = (self.piece(k), t - self.t[k]);
         let speed = piece.speed + piece.acceleration * tau;
@@ -93,7 +93,7 @@ impl Profile {
         (s.min(self.s[k + 1]), speed.max(0.0), piece.acceleration)
     }
 
-    /// When the motion passes `at`, s; its ends outside.
+    /// Time at which the motion passes `at`, s; clamped to the path.
     pub fn time_at(&self, at: f64) -> f64 {
         let last = self.s.len() - 1;
         if at >= self.s[last] {
@@ -103,18 +103,18 @@ impl Profile {
         after.checked_sub(1).map_or(0.0, |k| self.time_in(k, at))
     }
 
-    /// When the motion passes `at`, which lies in the interval k, s.
+    /// Time at which the motion passes `at` within interval k, s.
     pub(crate) fn time_in(&self, k: usize, at: f64) -> f64 {
         let piece = self.piece(k);
         let distance = (at - self.s[k]).max(0.0);
-        // The speed there by energy; the mean of both speeds takes the time.
+        // v² = v₀² + 2 a d; the time is the distance over the mean speed.
         let square = piece.speed.powi(2) + 2.0 * piece.acceleration * distance;
         let sum = piece.speed + square.max(0.0).sqrt();
         let time = if sum > 0.0 { 2.0 * distance / sum } else { 0.0 };
         self.t[k] + time.min(piece.duration)
     }
 
-    /// The same path in `duration` seconds, uniformly slower or faster.
+    /// The same path in `duration` (s), uniformly slower or faster.
     pub fn scaled_to(&self, duration: f64) -> Option<Profile> {
         let ratio = self.duration() / duration;
         Profile::new(self.s.clone(), self.b.iter().map(|b| b * ratio * ratio).collect())

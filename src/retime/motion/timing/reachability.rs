@@ -1,26 +1,26 @@
-//! The fastest speed profile on a fixed path, by reachability in two passes.
+//! The fastest speed profile on a fixed path by two-pass reachability analysis.
 //!
-//! After Pham and Pham, "A new approach to time-optimal path parameterization based on
-//! reachability analysis" (2018): backward, the set of b = ṡ² from which the end can be reached
-//! is an interval K; forward, the fastest b inside it is taken. Here a stage works in the plane
-//! of b at both nodes, where all its limits are half planes and the set is a convex polygon: it
-//! is clipped, no linear program is needed, and places without inertia need no special case.
+//! After Pham and Pham, "A new approach to time-optimal path parameterization based on reachability
+//! analysis" (2018): the backward pass finds the interval of b = ṡ² from which the end is
+//! reachable; the forward pass takes the largest b in it. Here a stage works in the plane of b at
+//! both nodes: its limits are half planes and the feasible set is a convex polygon, which is
+//! clipped. No linear program is needed, and points without inertia need no special case.
 //!
-//! Viscous friction adds √b to the torque rows. It is replaced by its tangent at the profile of
-//! the pass before, which is on the safe side wherever friction adds to the load; the passes
-//! are repeated until the profile stays.
+//! Viscous friction adds √b to the torque rows. It is replaced by its tangent at the previous
+//! profile, which is conservative where friction adds to the load; the passes are repeated until
+//! the profile converges.
 
 use super::grid::PathGrid;
 use super::limits::{PathLimits, binding_rows, worst_ratio};
 use super::profile::Profile;
 use super::row::Row;
 
-/// How the search for the fastest profile ended.
+/// Outcome of the search for the fastest profile.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reachability {
     /// The fastest profile of the grid, with all limits verified.
     Optimal(Profile),
-    /// No profile keeps the limits; the interval at which the way back from the end broke off.
+    /// No profile keeps the limits; the interval at which the backward pass failed.
     Infeasible {
         /// Index of the interval.
         interval: usize,
@@ -37,29 +37,29 @@ impl Reachability {
     }
 }
 
-/// Accepted share of a limit beyond 1: rounding, and what a converged tangent leaves.
+/// Accepted relative excess of a limit: rounding and the error of a converged tangent.
 const RATIO_TOLERANCE: f64 = 1e-6;
-/// Room in a row on the way forward: where a row has no inertia, its slope is rounding, and a b
-/// that lies on it would be tied to that.
+/// Slack of a row in the forward pass: the slope of a row without inertia is a rounding error, and
+/// a b on the row must not be bound to it.
 const STAGE_SLACK: f64 = 1e-8;
-/// Relative change of the duration at which the passes stop: the next one would change by far less,
-/// as in Newton's method.
+/// Relative change of the duration at which the passes end. As in Newton's method, the next change
+/// would be far smaller.
 const TIME_TOLERANCE: f64 = 1e-5;
-/// Passes before the help of friction in braking is given up.
+/// Passes before friction that helps to brake is neglected.
 const MAX_PASSES: usize = 25;
-/// Factor on the tangent points while no profile is feasible.
+/// Factor on b at the tangent points while no profile is feasible.
 const TANGENT_RETREAT: f64 = 0.25;
-/// Retreats before the limits count as infeasible.
+/// Such reductions before the limits are infeasible.
 const MAX_RETREATS: usize = 12;
 
-/// What stands for √b in the rows.
+/// Approximation of √b in the rows.
 #[derive(Clone, Copy)]
 enum Root<'a> {
-    /// Nothing: no viscous friction.
+    /// Zero: no viscous friction.
     Absent,
     /// The tangent at these b.
     Tangent(&'a [f64]),
-    /// The tangent at these b where √b adds to the load, zero where it relieves.
+    /// The tangent at these b where √b adds to the load, zero where it reduces it.
     Pessimistic(&'a [f64]),
 }
 
@@ -72,13 +72,13 @@ struct Strip {
     hi: f64,
 }
 
-/// The fastest profile that starts and ends at rest and keeps the limits at both ends of each
-/// interval. Without torque limits, use infinite ones.
+/// The fastest profile from rest to rest within the limits at both ends of each interval. Missing
+/// torque limits are infinite.
 pub fn time_optimal(grid: &PathGrid, limits: &PathLimits) -> Reachability {
     let stages = Stages::new(grid, limits);
     let frictionless = stages.solve(Root::Absent);
     let Ok(mut b) = frictionless else {
-        // Friction can only relieve where the rest of the load is too high to begin with.
+        // Friction could only help where the load without it is too high.
         return verified(grid, limits, frictionless);
     };
     if !stages.viscous {
@@ -113,19 +113,18 @@ pub fn time_optimal(grid: &PathGrid, limits: &PathLimits) -> Reachability {
     verified(grid, limits, pessimistic)
 }
 
-/// Room in the bounds of [`speed_range`]: that of the stages, over all of them.
+/// Relative slack of the bounds of [`speed_range`] for the slack of all stages.
 const RANGE_ROOM: f64 = 1e-6;
-/// Passes that narrow the upper bounds: the help of friction falls with the speed.
+/// Passes that narrow the upper bounds, since the help of friction falls with the speed.
 const RANGE_PASSES: usize = 3;
-/// Bisections of each lower bound.
+/// Bisection steps of each lower bound.
 const DIP_STEPS: usize = 14;
-/// Share of the upper bound at which a dip counts as left.
+/// Relative distance to the upper bound at which a slow profile has returned to it.
 const LEFT: f64 = 1e-9;
 
-/// Bounds on ṡ² at the nodes of every profile that takes at most `duration` (s): what can be
-/// reached from rest, and where a profile is slow it loses time beside that place too, since it
-/// can't change its speed at once. The bounds are safe, not sharp: friction counts as it helps
-/// most.
+/// Bounds on ṡ² at the nodes that hold for every profile of at most `duration` (s). Upper bounds:
+/// reachability from rest. Lower bounds: a slow profile also loses time around the slow node, since
+/// its acceleration is limited. The bounds are safe, not tight: friction helps as much as it can.
 pub fn speed_range(grid: &PathGrid, limits: &PathLimits, duration: f64) -> Vec<(f64, f64)> {
     let stages = Stages::new(grid, limits);
     let last = grid.intervals();
@@ -155,14 +154,14 @@ pub fn speed_range(grid: &PathGrid, limits: &PathLimits, duration: f64) -> Vec<(
     (0..=last).map(|node| (least(node), most[node])).collect()
 }
 
-/// Moves the tangent points toward rest, where a tangent adds the least load.
+/// Moves the tangent points towards rest, where a tangent adds the least load.
 fn retreat(b: &mut [f64]) {
     for b in b {
         *b *= TANGENT_RETREAT;
     }
 }
 
-/// The outcome of passes, once it is verified.
+/// The outcome of the passes after verification.
 fn verified(grid: &PathGrid, limits: &PathLimits, b: Result<Vec<f64>, usize>) -> Reachability {
     match b {
         Ok(b) => {
@@ -173,7 +172,7 @@ fn verified(grid: &PathGrid, limits: &PathLimits, b: Result<Vec<f64>, usize>) ->
     }
 }
 
-/// The outcome of a profile that keeps the limits or not.
+/// The outcome of a profile; `kept`: it keeps the limits.
 fn outcome(grid: &PathGrid, b: Vec<f64>, kept: bool) -> Reachability {
     let slowest = b[1..b.len() - 1].iter().enumerate().min_by(|x, y| x.1.total_cmp(y.1));
     let interval = slowest.map_or(0, |(node, _)| node);
@@ -183,14 +182,14 @@ fn outcome(grid: &PathGrid, b: Vec<f64>, kept: bool) -> Reachability {
     }
 }
 
-/// The time of the profile b, s; infinite if it stands still.
+/// Duration of the profile b, s; infinite if it stands still.
 fn duration_of(grid: &PathGrid, b: &[f64]) -> f64 {
     (0..grid.intervals()).map(|k| 2.0 * grid.delta(k) / (b[k].sqrt() + b[k + 1].sqrt())).sum()
 }
 
-/// The rows of all intervals, with u in terms of b at both nodes.
+/// The rows of all intervals in terms of b at both nodes.
 struct Stages {
-    /// First row of each interval, and the number of rows at the end.
+    /// First row of each interval; last, the number of rows.
     first: Vec<usize>,
     rows: Vec<StageRow>,
     b_max: Vec<f64>,
@@ -232,7 +231,7 @@ impl Stages {
         stages
     }
 
-    /// Hands each strip of interval k to `take`.
+    /// Calls `take` with each strip of interval k.
     fn strips(&self, k: usize, root: Root<'_>, mut take: impl FnMut(Strip)) {
         let speeds = match root {
             Root::Absent => [0.0; 2],
@@ -262,7 +261,7 @@ impl Stages {
         }
     }
 
-    /// The time, s, that a profile loses against `most` at least by being at b or less at a node.
+    /// Least time, s, that a profile with at most b at a node loses relative to `most`.
     fn lost(&self, grid: &PathGrid, most: &[f64], node: usize, b: f64) -> f64 {
         let time = |k: usize, x: f64, y: f64| 2.0 * grid.delta(k) / (x.sqrt() + y.sqrt());
         let mut lost = 0.0;
@@ -287,8 +286,8 @@ impl Stages {
         lost
     }
 
-    /// No b at the other end of interval k is larger where it is at most `b` at `end`, with friction
-    /// as it helps most below `most`.
+    /// Upper bound of b at the other end of interval k for at most `b` at `end`, with the most
+    /// helpful friction below `most`.
     fn largest(&self, k: usize, end: usize, b: f64, most: &[f64]) -> f64 {
         let mut largest = f64::INFINITY;
         for row in &self.rows[self.first[k]..self.first[k + 1]] {
@@ -296,7 +295,7 @@ impl Stages {
             let (lo, hi) =
                 (-1.0 - row.constant - root.max(0.0), 1.0 - row.constant - root.min(0.0));
             let (here, there) = if end == 0 { (row.x, row.y) } else { (row.y, row.x) };
-            // Whichever b up to the given one leaves most.
+            // The b in 0 … `b` that permits most.
             if there > 0.0 {
                 largest = largest.min((hi - (here * b).min(0.0)) / there);
             } else if there < 0.0 {
@@ -306,8 +305,8 @@ impl Stages {
         largest.max(0.0)
     }
 
-    /// The fastest b at the nodes under the given stand-in for √b, or the interval at which the
-    /// way back from the end broke off.
+    /// The fastest b at the nodes with this approximation of √b, or the interval at which the
+    /// backward pass failed.
     fn solve(&self, root: Root<'_>) -> Result<Vec<f64>, usize> {
         let n = self.b_max.len() - 1;
         let mut reachable = vec![(0.0, 0.0); n + 1];
@@ -353,7 +352,7 @@ impl Polygon {
 
     /// Keeps the part inside the strip.
     fn clip(&mut self, strip: Strip) {
-        // Most strips hold the whole polygon.
+        // Most strips contain the whole polygon.
         let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
         for (x, y) in &self.vertices {
             let value = strip.x * x + strip.y * y;
@@ -391,7 +390,7 @@ impl Polygon {
         std::mem::swap(&mut self.vertices, &mut self.spare);
     }
 
-    /// Smallest and largest x; none if the polygon is empty.
+    /// Smallest and largest x; `None` if the polygon is empty.
     fn x_range(&self) -> Option<(f64, f64)> {
         let ends = self
             .vertices

@@ -1,4 +1,4 @@
-//! A limit at one place of a path, as a row in u = s̈ and b = ṡ².
+//! A limit at one point of a path as a row in u = s̈ and b = ṡ².
 
 /// |u · `u` + b · `b` + √b · `root` + `constant`| ≤ 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -9,12 +9,12 @@ pub struct Row {
     pub b: f64,
     /// Factor of ṡ.
     pub root: f64,
-    /// The rest.
+    /// Constant term.
     pub constant: f64,
 }
 
 impl Row {
-    /// The row at the share `x` of the way to `other`.
+    /// Linear interpolation to `other` at the share `x`.
     pub(crate) fn toward(&self, other: &Row, x: f64) -> Row {
         let mix = |a: f64, b: f64| a + x * (b - a);
         Row {
@@ -25,14 +25,14 @@ impl Row {
         }
     }
 
-    /// Bound on the absolute value while |u| and b are at most these; `root` is √b.
+    /// Bound on the absolute value for |u| and b up to these values; `root` is √b.
     pub(super) fn largest(&self, u: f64, b: f64, root: f64) -> f64 {
-        // Without inertia the acceleration does not matter, however large it may be.
+        // Avoids 0 · ∞ for a row without inertia.
         let inertial = if self.u == 0.0 { 0.0 } else { self.u.abs() * u };
         inertial + self.b.abs() * b + self.root.abs() * root + self.constant.abs()
     }
 
-    /// The left side without the absolute value.
+    /// The row without the absolute value.
     pub(crate) fn value(&self, u: f64, b: f64) -> f64 {
         self.u * u + self.b * b + self.root * b.sqrt() + self.constant
     }

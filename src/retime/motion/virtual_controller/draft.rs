@@ -1,4 +1,4 @@
-//! Items that are not on the time line yet.
+//! Items that are not yet on the time line.
 
 use std::sync::Arc;
 
@@ -10,25 +10,25 @@ use crate::retime::motion::sampling::Loaded;
 use crate::retime::path::Leg;
 use crate::retime::path::joint_path::Joints;
 
-/// A run to a stop that is not planned yet.
+/// A run that is not yet planned.
 pub(super) struct RunDraft {
     pub(super) movements: Vec<Movement>,
     pub(super) legs: Vec<Leg>,
     /// `\T` of the movements under the overrides, s.
     pub(super) times: Vec<Option<f64>>,
     pub(super) load: Load,
-    /// In force at its first movement.
+    /// Settings of the first movement.
     pub(super) settings: Arc<Settings>,
 }
 
-/// A wait at joints q (rad) that is not on the time line yet.
+/// A wait at the joint angles q (rad).
 pub(super) struct WaitDraft {
     pub(super) wait: Wait,
     pub(super) q: Joints,
     pub(super) load: Load,
 }
 
-/// An item that becomes an event once its time is known.
+/// An item that becomes an event.
 pub(super) enum Draft {
     Run(Box<RunDraft>),
     Wait(Box<WaitDraft>),
@@ -37,7 +37,7 @@ pub(super) enum Draft {
 }
 
 impl RunDraft {
-    /// The first movements of it alone: the robot stops behind them.
+    /// Keeps the first `count` movements; the robot stops after them.
     pub(super) fn truncate(&mut self, count: usize) {
         self.movements.truncate(count);
         self.legs.truncate(count);

@@ -1,4 +1,4 @@
-//! Plans runs and lays runs, waits and outputs on the time line.
+//! Plans runs and places runs, waits and outputs on the time line.
 
 use rayon::prelude::*;
 
@@ -11,15 +11,15 @@ use crate::retime::motion::run_plan::Planned;
 use crate::retime::motion::timeline::{Event, MoveRecord, Run, WaitBasis, WaitRecord, What};
 
 /// Drafts that are planned together: enough for all processors, few enough that an endless program
-/// does not run far beyond its largest time.
+/// does not run far beyond its time limit.
 const BATCH: usize = 256;
 
-/// Time constant with which the error of the servos dies away at a stop point, s. Chosen: position
-/// loops of such robots close at some 20/s; no measurement of stop points with `inpos` is known.
+/// Time constant of the servo error at a stop point, s. Assumed from position loops with a
+/// bandwidth of about 20/s; no measurement of stop points with `inpos` is known.
 const SERVO_S: f64 = 0.05;
 
 impl VirtualController<'_> {
-    /// Keeps the pending movements as one run to a stop.
+    /// Makes one run of the pending movements.
     pub(super) fn flush(&mut self) {
         let pending = std::mem::take(&mut self.pending);
         self.pending_s = 0.0;
@@ -38,7 +38,7 @@ impl VirtualController<'_> {
         }
     }
 
-    /// Plans the drafts, runs in parallel, and lays them on the time line.
+    /// Plans the drafts (runs in parallel) and places them on the time line.
     pub(super) fn lay_out(&mut self) {
         let model = self.model;
         let drafts = std::mem::take(&mut self.drafts);
@@ -77,7 +77,7 @@ impl VirtualController<'_> {
         if let Some((duration, _)) = pieces.last_mut() {
             *duration += stands;
         }
-        // The logic goes on when a movement with \Conc begins.
+        // The program continues at the start of a movement with \Conc.
         let under_way = movements.iter().zip(&pieces).rev();
         let under_way = under_way.take_while(|(movement, _)| movement.concurrent);
         let ahead: f64 = under_way.map(|(_, (duration, _))| duration).sum();
@@ -103,9 +103,8 @@ impl VirtualController<'_> {
             start_known: self.certain,
             problem: problem.map(|(_, reason)| reason),
         };
-        // An output between fly-by movements was noted when the run was not planned yet: it
-        // keeps its place in the order before the run's event.
-        // The first movement ends at its target, wherever it starts.
+        // An output between fly-by movements precedes the event of their run.
+        // The first movement ends at its target from any start.
         let first = !self.events.iter().any(|event| matches!(event.what, What::Run(_)));
         self.certain = run.problem.is_none() || (first && self.options.start.is_none());
         if t > 0.0 {
@@ -115,7 +114,7 @@ impl VirtualController<'_> {
         self.push(t, What::Run(Box::new(run)));
     }
 
-    /// Between two movements the robot rests at the stop point. A wait takes that time too.
+    /// Adds the rest at the stop point between two movements. A wait includes this time.
     fn settle(&mut self) {
         let settling = self.settling;
         let own = self.events.iter().rev().take_while(|event| event.is_within_next_run()).count();
@@ -134,14 +133,14 @@ impl VirtualController<'_> {
         self.time += settling;
     }
 
-    /// When the input of a wait comes, s from the start of the cycle, if the user states it.
+    /// Time of the input of a wait, s from the start of the cycle, if the user states it.
     pub(super) fn input_at(&self, wait: &Wait) -> Option<f64> {
         let key = wait.signal.as_ref()?.to_lowercase();
         let delay = self.options.inputs.get(&key)?;
         Some(self.waited.get(&key).copied().unwrap_or(0.0) + delay)
     }
 
-    /// Time that the robot stands at a stop point besides settling, s.
+    /// Time at a stop point in addition to settling, s.
     fn stands(&mut self, movement: &Movement) -> f64 {
         match movement.stop {
             Stop::Fine => 0.0,
@@ -153,7 +152,7 @@ impl VirtualController<'_> {
                 if !self.assumed.contains(&text) {
                     self.assumed.push(text);
                 }
-                // The error that `fine` allows is reached without a wait; it dies away from there.
+                // The error that `fine` permits needs no wait; the exponential decay starts there.
                 let longer = if share > 0.0 { -SERVO_S * share.ln() } else { f64::INFINITY };
                 longer.max(0.0).clamp(least, most)
             }
@@ -161,7 +160,7 @@ impl VirtualController<'_> {
     }
 
     fn lay_wait(&mut self, WaitDraft { wait, q, load }: WaitDraft) {
-        // Logic that runs during a movement with \Conc takes no time of its own.
+        // Logic during a movement with \Conc takes no additional time.
         let begin = self.time - self.ahead;
         self.waited_last = Waited::Ended;
         let (length, basis) = match (wait.duration, self.input_at(&wait)) {

@@ -1,4 +1,4 @@
-//! What the robot carries during a movement or a wait.
+//! Tool and payload during a movement or a wait.
 
 use nalgebra::{Isometry3, Matrix3, Quaternion, UnitQuaternion, Vector3};
 
@@ -13,14 +13,14 @@ pub(super) fn effective_load(movement: &Movement) -> Load {
     gripped(&gripping(movement), movement.settings.grip_load.as_ref())
 }
 
-/// The tool with the frame in which `GripLoad` states a load: that of the tool, or of the work
-/// object where the robot holds that.
+/// The tool with the frame in which `GripLoad` states a load: the tool frame, or the work object
+/// frame if the robot holds the work object.
 pub(super) fn gripping(movement: &Movement) -> Tool {
     let tool = movement.tool.clone();
     if tool.robhold { tool } else { Tool { frame: movement.wobj.frame, ..tool } }
 }
 
-/// A tool with what `GripLoad` says that it holds.
+/// A tool with its `GripLoad`.
 pub(super) fn gripped(tool: &Tool, grip: Option<&LoadData>) -> Load {
     let alone = load(&tool.load, &Isometry3::identity());
     match grip {

@@ -1,4 +1,4 @@
-//! What the executor of a program asks of the controller.
+//! The interface of the controller to the program executor.
 
 use nalgebra::Isometry3;
 
@@ -69,7 +69,7 @@ impl Machine for VirtualController<'_> {
     }
 
     fn sets(&mut self, output: Output) {
-        // Fly-by movements go on while the logic runs; the place in the order is kept.
+        // Fly-by movements continue during the output; its position in the order is kept.
         let position = self.pending.len();
         self.keep(Draft::Output(output, position));
     }
@@ -95,7 +95,7 @@ impl Machine for VirtualController<'_> {
     }
 
     fn repeats(&mut self) {
-        // What is pending becomes the next event, and its end belongs to the loop.
+        // The pending movements become the next event, and their end belongs to the loop.
         self.repeats_from.get_or_insert(self.events.len() + self.drafts.len());
     }
 

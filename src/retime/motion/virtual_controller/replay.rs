@@ -1,5 +1,5 @@
-//! Lays given movements, waits and outputs on a time line: the effect of another zone, speed or order
-//! of some of them, without executing the program.
+//! Places given movements, waits and outputs on a time line without executing the program, for
+//! changed zones, speeds or order.
 
 use std::collections::BTreeMap;
 
@@ -12,21 +12,20 @@ use crate::rapid::ir::movement::{Movement, Output, Wait};
 use crate::retime::motion::timeline::Simulation;
 use crate::retime::path::joint_path::Joints;
 
-/// Something that the robot did.
+/// An action of the robot.
 #[derive(Clone, Debug)]
 pub enum Step {
-    /// It moved.
+    /// A movement.
     Move(Box<Movement>),
-    /// It waited for as long as the wait states.
+    /// A wait with its stated duration.
     Wait(Box<Wait>),
-    /// An output was set: no rest at a stop point is added where one follows.
+    /// An output; at a stop point before it no rest is added.
     Output(Box<Output>),
 }
 
-/// Lays steps on a time line from the joints at which the robot stands at first, rad, with what
-/// the movement `before` had it carry. Inputs come at no time of their own: a wait without a
-/// stated length takes none. With the rest that the last stop point adds where a movement follows
-/// at once, s.
+/// Places steps on a time line from the start position (rad) with the tool of the movement
+/// `before`. Inputs have no times: a wait without a stated duration takes 0 s. Also returns the
+/// rest that the last stop point adds if a movement follows directly, s.
 pub fn replay(
     model: &Model,
     options: &Options,

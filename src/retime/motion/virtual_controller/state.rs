@@ -1,4 +1,4 @@
-//! The state of the virtual controller while a program runs.
+//! The state of the virtual controller during the execution of a program.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,7 +12,7 @@ use crate::retime::motion::timeline::{Event, What};
 use crate::retime::path::Leg;
 use crate::retime::path::joint_path::{DOF, Joints};
 
-/// A movement whose geometry is solved and that waits for the rest of its run.
+/// A movement with solved geometry in an incomplete run.
 pub(super) struct Pending {
     pub(super) movement: Movement,
     pub(super) leg: Leg,
@@ -21,13 +21,13 @@ pub(super) struct Pending {
 pub(super) struct VirtualController<'a> {
     pub(super) model: &'a Model,
     pub(super) options: &'a Options,
-    /// Joints after all movements so far, pending ones included, rad.
+    /// Joint angles after all movements, including pending ones, rad.
     pub(super) q: Joints,
-    /// False where the position of the robot is not known, at the end of the time line.
+    /// False if the position at the end of the time line is unknown.
     pub(super) certain: bool,
-    /// How long the robot rests after the last run before it can move on, s.
+    /// Rest after the last run before the next movement, s.
     pub(super) settling: f64,
-    /// True once the time line is longer than the largest time.
+    /// True if the time line exceeds the time limit.
     pub(super) late: bool,
     pub(super) moved: bool,
     /// Tool of the last movement.
@@ -35,15 +35,15 @@ pub(super) struct VirtualController<'a> {
     pub(super) time: f64,
     pub(super) events: Vec<Event>,
     pub(super) pending: Vec<Pending>,
-    /// Time that the pending movements take at their speeds, s.
+    /// Time of the pending movements at their programmed speeds, s.
     pub(super) pending_s: f64,
-    /// Time by which the logic is ahead of the motion (`\Conc`), s.
+    /// Lead of the program over the motion (`\Conc`), s.
     pub(super) ahead: f64,
-    /// How the wait that was laid out last ended.
+    /// Outcome of the last wait.
     pub(super) waited_last: Waited,
     /// Assumptions about the controller.
     pub(super) assumed: Vec<String>,
-    /// Items that are not on the time line yet: each becomes one event.
+    /// Items that are not yet on the time line; each becomes one event.
     pub(super) drafts: Vec<Draft>,
     pub(super) notes: Vec<Note>,
     pub(super) repeats_from: Option<usize>,
@@ -51,7 +51,7 @@ pub(super) struct VirtualController<'a> {
     pub(super) waited: BTreeMap<String, f64>,
     /// Lower-case names of the inputs that were waited for.
     pub(super) asked: BTreeSet<String>,
-    /// Number of movements of the program so far.
+    /// Number of executed movements.
     pub(super) moves: usize,
 }
 
@@ -82,13 +82,13 @@ impl<'a> VirtualController<'a> {
         }
     }
 
-    /// The override of speeds by `VelSet`, `SpeedRefresh` and the user.
+    /// The speed override of `VelSet`, `SpeedRefresh` and the user.
     pub(super) fn speed_override(&self, movement: &Movement) -> f64 {
         let settings = &movement.settings;
         settings.speed_override * settings.refresh * self.options.speed_override.unwrap_or(1.0)
     }
 
-    /// `\T` under the overrides: 50 % takes twice the time.
+    /// `\T` under the overrides: at 50 % the time is doubled.
     pub(super) fn timed(&self, movement: &Movement) -> Option<f64> {
         movement.time.map(|t| t / self.speed_override(movement))
     }

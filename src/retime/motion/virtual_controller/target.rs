@@ -1,4 +1,4 @@
-//! Where a movement goes: its target in joints, in the configuration that the program asks for.
+//! The target of a movement in joint angles, in the programmed configuration.
 
 use nalgebra::Isometry3;
 
@@ -9,7 +9,7 @@ use crate::rapid::ir::movement::{Movement, Target};
 use crate::retime::path::{Leg, LegKind, arrival};
 
 impl VirtualController<'_> {
-    /// Solves where a movement goes.
+    /// Solves the geometry of a movement.
     pub(super) fn leg(&self, movement: &Movement) -> Result<Leg, String> {
         if movement.wobj.robhold == movement.tool.robhold {
             let both = if movement.tool.robhold { "both tool and work" } else { "neither" };
@@ -18,10 +18,10 @@ impl VirtualController<'_> {
         if !movement.wobj.fixed {
             return Err("a work object on a moving mechanical unit is not simulated".into());
         }
-        // What does not move with the robot is stated in the world, solved in its base frame.
+        // Fixed frames are stated in the world frame and solved in the base frame.
         let world = self.model.kinematics.base.inverse();
         let held = movement.tool.robhold;
-        // A program displacement moves the targets in the object's frame.
+        // A program displacement moves the targets in the object frame.
         let displacement = movement.settings.displacement.unwrap_or_else(Isometry3::identity);
         let object = movement.wobj.frame * displacement;
         let base = if held { world * object } else { object };
@@ -69,7 +69,7 @@ impl VirtualController<'_> {
         let zone = movement.zone;
         let mut leg = Leg { kind, start: self.q, end, tool, target, axiswise, speed, zone };
         if !stated_end && !axiswise {
-            // The configuration in which the line arrives.
+            // The configuration at the end of the line.
             leg.end = arrival(self.model, &leg).unwrap_or(end);
         }
         Ok(leg)

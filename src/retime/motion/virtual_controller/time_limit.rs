@@ -1,4 +1,4 @@
-//! Where a simulation ends that would last too long.
+//! Limits on the length of a simulation.
 
 use super::draft::RunDraft;
 use super::state::VirtualController;
@@ -8,13 +8,13 @@ use crate::retime::motion::run_plan::Planned;
 use crate::retime::motion::timeline::What;
 use crate::retime::path::{Leg, LegKind};
 
-/// Time after which a simulation ends where nothing else is said, s: ten hours.
+/// Default time limit of a simulation, s: ten hours.
 const MAX_TIME: f64 = 36_000.0;
-/// Events of a simulation: more are not kept.
+/// Largest number of events of a simulation.
 const MAX_EVENTS: usize = 200_000;
-/// Movements of a simulation: their motions take memory.
+/// Largest number of movements of a simulation; their motions take memory.
 const MAX_MOVES: usize = 50_000;
-/// Zones may shorten movements to this share.
+/// Smallest share to which zones shorten movements.
 const SHORTEST: f64 = 0.5;
 
 impl VirtualController<'_> {
@@ -27,7 +27,7 @@ impl VirtualController<'_> {
         self.moves > MAX_MOVES || events > MAX_EVENTS
     }
 
-    /// Time that a movement takes without acceleration, s.
+    /// Duration of a movement without acceleration, s.
     pub(super) fn time_at_speed(&self, leg: &Leg, movement: &Movement) -> f64 {
         if let Some(time) = self.timed(movement) {
             return time;
@@ -43,7 +43,7 @@ impl VirtualController<'_> {
         slowest.max(way / leg.speed.tcp)
     }
 
-    /// Ends fly-by movements that last too long however short their zones make them.
+    /// Ends the pending fly-by movements if they exceed the time limit even with shortening zones.
     pub(super) fn flush_if_late(&mut self) {
         if self.time + SHORTEST * self.pending_s > self.max_time() {
             self.flush();
@@ -52,7 +52,7 @@ impl VirtualController<'_> {
         }
     }
 
-    /// A run up to the movement during which the largest time is over; the robot stops behind it.
+    /// The run up to the movement that exceeds the time limit; the robot stops after it.
     pub(super) fn in_time(&mut self, mut run: RunDraft, plan: Planned) -> (RunDraft, Planned) {
         let left = self.max_time() - self.time;
         let mut t = 0.0;
@@ -70,7 +70,7 @@ impl VirtualController<'_> {
         (run, plan)
     }
 
-    /// Tells at which instruction the simulation ended, if it was not at the program's end.
+    /// Notes the statement at which a limit ended the simulation.
     pub(super) fn tell_length(&mut self) {
         let reason = if self.late {
             format!(
