@@ -26,7 +26,7 @@ pub fn load_estimated(name_or_path: &str) -> Result<Model, RobotError> {
 /// A model with estimates for unknown numbers of an arm and with its effects.
 ///
 /// # Errors
-/// As for [`load`].
+/// An effect is unknown, or its result or the stated mass is impossible.
 pub fn with_estimates(model: Model) -> Result<Model, RobotError> {
     robot::prior::check_mass(&model)?;
     let model = applied(robot::prior::estimated(model))?;

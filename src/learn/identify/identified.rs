@@ -21,7 +21,7 @@ pub struct Identified {
     pub fit: Fit,
     /// All free parameters of the model, in the order of `among`.
     pub parameters: Vec<f64>,
-    /// Their indices, as in [`parameter_name`](crate::arm::dynamics::parameter_name).
+    /// Their indices, as in `parameter_name`.
     pub among: Vec<usize>,
     /// The wrist coupling found in the data, if the model has none.
     pub coupling: Option<f64>,

@@ -37,7 +37,7 @@ pub enum Symbol {
     Data(DataId),
     /// A routine.
     Routine(RoutineId),
-    /// More than one declaration: a [`Clash`].
+    /// More than one declaration: a `Clash`.
     Ambiguous,
 }
 

@@ -6,7 +6,7 @@ use std::ops::Range;
 /// the packed word.
 macro_rules! token_kinds {
     (
-        $($(#[$doc:meta])* $kind:ident = $text:literal,)*
+        kinds { $($(#[$doc:meta])* $kind:ident = $text:literal,)* }
         keywords { $($keyword:ident = $word:literal,)* }
         $(#[$end_doc:meta])* $end:ident = $end_text:literal,
     ) => {
@@ -49,51 +49,53 @@ macro_rules! token_kinds {
 }
 
 token_kinds! {
-    /// Spaces, line ends, control characters, wide spaces.
-    Whitespace = "white space",
-    /// `! …` to the end of the line, without the line end.
-    Comment = "a comment",
-    /// Identifier that is not a keyword.
-    Identifier = "a name",
-    /// `1`, `.5`, `1E-3`, `0xFF` …
-    Number = "a number",
-    /// `"…"`
-    String = "a string",
-    /// `"…` up to the end of the line.
-    UnclosedString = "a string without its closing quotation mark",
-    /// `<SMT>`, `<EXP>` …
-    Placeholder = "a placeholder",
-    /// `%%%`
-    HeaderMark = "'%%%'",
-    /// A whole module in ABB's binary encoding.
-    Encoded = "an encoded module",
-    /// Bytes that start no token of RAPID.
-    Unknown = "a character that RAPID does not have here",
-    Semicolon = "';'",
-    Comma = "','",
-    Colon = "':'",
-    Assign = "':='",
-    Dot = "'.'",
-    LeftParen = "'('",
-    RightParen = "')'",
-    LeftBracket = "'['",
-    RightBracket = "']'",
-    LeftBrace = "'{'",
-    RightBrace = "'}'",
-    Backslash = "'\\'",
-    Question = "'?'",
-    Bar = "'|'",
-    Percent = "'%'",
-    Plus = "'+'",
-    Minus = "'-'",
-    Star = "'*'",
-    Slash = "'/'",
-    Equal = "'='",
-    NotEqual = "'<>'",
-    Less = "'<'",
-    LessEqual = "'<='",
-    Greater = "'>'",
-    GreaterEqual = "'>='",
+    kinds {
+        /// Spaces, line ends, control characters, wide spaces.
+        Whitespace = "white space",
+        /// `! …` to the end of the line, without the line end.
+        Comment = "a comment",
+        /// Identifier that is not a keyword.
+        Identifier = "a name",
+        /// `1`, `.5`, `1E-3`, `0xFF` …
+        Number = "a number",
+        /// `"…"`
+        String = "a string",
+        /// `"…` up to the end of the line.
+        UnclosedString = "a string without its closing quotation mark",
+        /// `<SMT>`, `<EXP>` …
+        Placeholder = "a placeholder",
+        /// `%%%`
+        HeaderMark = "'%%%'",
+        /// A whole module in ABB's binary encoding.
+        Encoded = "an encoded module",
+        /// Bytes that start no token of RAPID.
+        Unknown = "a character that RAPID does not have here",
+        Semicolon = "';'",
+        Comma = "','",
+        Colon = "':'",
+        Assign = "':='",
+        Dot = "'.'",
+        LeftParen = "'('",
+        RightParen = "')'",
+        LeftBracket = "'['",
+        RightBracket = "']'",
+        LeftBrace = "'{'",
+        RightBrace = "'}'",
+        Backslash = "'\\'",
+        Question = "'?'",
+        Bar = "'|'",
+        Percent = "'%'",
+        Plus = "'+'",
+        Minus = "'-'",
+        Star = "'*'",
+        Slash = "'/'",
+        Equal = "'='",
+        NotEqual = "'<>'",
+        Less = "'<'",
+        LessEqual = "'<='",
+        Greater = "'>'",
+        GreaterEqual = "'>='",
+    }
     keywords {
         Alias = "ALIAS",
         And = "AND",

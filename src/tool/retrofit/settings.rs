@@ -27,8 +27,7 @@ pub enum Budget {
     AsBefore,
     /// Cycle time, s.
     Takt(f64),
-    /// Duration of each run as a multiple of its original duration, at most
-    /// [`SLOWEST`](crate::retime::optimize::retime::SLOWEST).
+    /// Duration of each run as a multiple of its original duration, at most 10.
     Factor(f64),
 }
 
