@@ -15,6 +15,8 @@ mod marks;
 mod motion;
 #[cfg(feature = "parquet")]
 mod parquet;
+#[cfg(test)]
+mod periodic_motion;
 mod periods;
 mod read;
 mod rows;
