@@ -1,0 +1,20 @@
+//! Acceleration that is higher or lower.
+
+use crate::arm::effects::effect::{Channel, Effect, Form, Scope, bounded};
+
+pub(crate) const ACCELERATION_LIMIT: Effect = Effect {
+    id: "acceleration_limit",
+    channel: Channel::Motion,
+    scope: Scope::Robot,
+    title: "Acceleration that is higher or lower",
+    law: "acceleration × factor",
+    source: "docs/controller.md",
+    parameters: &[bounded("factor", "1", "acceleration over planned acceleration", [0.01, 10.0])],
+    coordinates: &[],
+    published: None,
+    joints: |_| vec![0],
+    brings: &[],
+    confused: &["speed_limit"],
+    experiment: ["", "the same program again, logged with `line` or `cmd`"],
+    form: Form::Elsewhere,
+};

@@ -1,0 +1,20 @@
+//! A wait that is not in the model.
+
+use crate::arm::effects::effect::{Channel, Effect, Form, Scope, free};
+
+pub(crate) const PROGRAM_WAIT: Effect = Effect {
+    id: "program_wait",
+    channel: Channel::Motion,
+    scope: Scope::Robot,
+    title: "A wait that the model does not know",
+    law: "wait between two movements",
+    source: "docs/controller.md",
+    parameters: &[free("wait", "s", "time more")],
+    coordinates: &[],
+    published: None,
+    joints: |_| vec![0],
+    brings: &[],
+    confused: &["acceleration_limit"],
+    experiment: ["", "the same program again, logged with `line` or `cmd`"],
+    form: Form::Elsewhere,
+};

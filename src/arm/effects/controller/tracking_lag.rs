@@ -1,0 +1,20 @@
+//! Lag of the servos.
+
+use crate::arm::effects::effect::{Channel, Effect, Form, Scope, free};
+
+pub(crate) const TRACKING_LAG: Effect = Effect {
+    id: "tracking_lag",
+    channel: Channel::Motion,
+    scope: Scope::Robot,
+    title: "Lag of the servos",
+    law: "q(t) = q_ref(t − lag)",
+    source: "docs/controller.md",
+    parameters: &[free("lag", "s", "the robot later than planned")],
+    coordinates: &[],
+    published: None,
+    joints: |_| vec![0],
+    brings: &[],
+    confused: &["zone_blending"],
+    experiment: ["", "the same program again, logged with `line` or `cmd`"],
+    form: Form::Elsewhere,
+};

@@ -1,0 +1,20 @@
+//! Corners that are cut more or less.
+
+use crate::arm::effects::effect::{Channel, Effect, Form, Scope, bounded};
+
+pub(crate) const ZONE_BLENDING: Effect = Effect {
+    id: "zone_blending",
+    channel: Channel::Motion,
+    scope: Scope::Robot,
+    title: "Corners that are cut more or less",
+    law: "zone radius × factor",
+    source: "docs/controller.md",
+    parameters: &[bounded("factor", "1", "radius over planned radius", [0.0, 10.0])],
+    coordinates: &[],
+    published: None,
+    joints: |_| vec![0],
+    brings: &[],
+    confused: &["acceleration_limit"],
+    experiment: ["", "the same program again, logged with `line` or `cmd`"],
+    form: Form::Elsewhere,
+};

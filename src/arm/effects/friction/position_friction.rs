@@ -1,0 +1,32 @@
+//! Friction with one period per turn: an eccentric gear, a bent shaft.
+
+use crate::arm::robot::LawState;
+
+use crate::arm::effects::effect::{
+    Channel, Effect, Form, Scope, Values, bounded, every, free, linear,
+};
+use crate::arm::effects::waves::AMPLITUDE_AND_PHASE;
+
+pub(crate) const POSITION_FRICTION: Effect = Effect {
+    id: "position_friction",
+    channel: Channel::Torque,
+    scope: Scope::Joint,
+    title: "Friction over the angle",
+    law: "τ = amplitude·cos(q − phase)·s",
+    source: "B. Armstrong-Hélouvry, Control of Machines with Friction, 1991: friction over position",
+    parameters: &[
+        bounded("amplitude", "Nm", "half of the difference", [0.0, f64::INFINITY]),
+        free("phase", "rad", "angle of the most friction"),
+    ],
+    coordinates: &[linear(|of| 0.15 * of.coulomb), linear(|of| 0.15 * of.coulomb)],
+    published: Some(AMPLITUDE_AND_PHASE),
+    joints: every,
+    brings: &[],
+    confused: &["load_friction", "gear_efficiency"],
+    experiment: ["--variant payload", "the same angles with another load"],
+    form: Form::Law { dissipates: true, torque },
+};
+
+fn torque(state: &LawState, [cosine, sine, ..]: &Values) -> f64 {
+    (cosine * state.q.cos() + sine * state.q.sin()) * state.sense
+}

@@ -1,0 +1,26 @@
+//! Viscous friction that differs between directions.
+
+use crate::arm::robot::LawState;
+
+use crate::arm::effects::effect::{Channel, Effect, Form, Scope, Values, every, free, linear};
+
+pub(crate) const VISCOUS_ASYMMETRY: Effect = Effect {
+    id: "viscous_asymmetry",
+    channel: Channel::Torque,
+    scope: Scope::Joint,
+    title: "Asymmetry of viscous friction",
+    law: "τ = asymmetry·|q̇|",
+    source: "J. Hollerbach, W. Khalil, M. Gautier, Model identification, Springer Handbook of Robotics, 2016",
+    parameters: &[free("asymmetry", "Nm s/rad", "half of what it is more forwards than backwards")],
+    coordinates: &[linear(|of| 0.2 * of.viscous)],
+    published: None,
+    joints: every,
+    brings: &[],
+    confused: &["nonlinear_viscous", "torque_offset"],
+    experiment: ["--variant friction", "six speeds both ways"],
+    form: Form::Law { dissipates: true, torque },
+};
+
+fn torque(state: &LawState, [asymmetry, ..]: &Values) -> f64 {
+    asymmetry * state.rate * state.sense
+}

@@ -1,0 +1,20 @@
+//! An angle that differs from the log: calibration error, slipped revolution counter.
+
+use crate::arm::effects::effect::{Channel, Effect, Form, Scope, bounded, every, linear};
+
+pub(crate) const ENCODER_OFFSET: Effect = Effect {
+    id: "encoder_offset",
+    channel: Channel::Torque,
+    scope: Scope::Joint,
+    title: "Offset of an angle",
+    law: "τ = τ(q + offset)",
+    source: "FACTS of calibration: fine calibration is within 0.5 mrad, one motor turn is 2π/n",
+    parameters: &[bounded("offset", "rad", "true less logged angle", [-0.5, 0.5])],
+    coordinates: &[linear(|of| (2.0 / of.ratio).clamp(5e-3, 0.05))],
+    published: None,
+    joints: every,
+    brings: &[],
+    confused: &["link_parameters", "base_tilt"],
+    experiment: ["--variant gravity", "poses on both sides of the vertical"],
+    form: Form::Model(|model, joint, values| model.sensors.position_offset[joint] += values[0]),
+};

@@ -1,0 +1,20 @@
+//! A torque constant or current sensor gain that differs from the stated one.
+
+use crate::arm::effects::effect::{Channel, Effect, Form, Scope, bounded, every, linear};
+
+pub(crate) const TORQUE_CONSTANT: Effect = Effect {
+    id: "torque_constant",
+    channel: Channel::Torque,
+    scope: Scope::Joint,
+    title: "Torque constant",
+    law: "τ = (1 + error) τ",
+    source: "M. Gautier, S. Briot, Global identification of drive gains parameters of robots using a known payload, ICRA 2011",
+    parameters: &[bounded("error", "1", "logged over true torque, less 1", [-0.9, 4.0])],
+    coordinates: &[linear(|_| 0.1)],
+    published: None,
+    joints: every,
+    brings: &[],
+    confused: &["link_parameters", "current_saturation"],
+    experiment: ["--variant payload", "with and without a known payload"],
+    form: Form::Model(|model, joint, values| model.sensors.torque_error[joint] += values[0]),
+};

@@ -1,0 +1,28 @@
+//! Coils of the brakes.
+
+use crate::arm::robot::Model;
+
+use crate::arm::effects::effect::{Channel, Effect, Form, Scope, free};
+
+pub(crate) const BRAKE_POWER: Effect = Effect {
+    id: "brake_power",
+    channel: Channel::Power,
+    scope: Scope::Robot,
+    title: "Coils of the brakes",
+    law: "P = power while they are released",
+    source: "docs/energy.md",
+    parameters: &[free("power", "W", "power more")],
+    coordinates: &[],
+    published: None,
+    joints: |_| vec![0],
+    brings: &[],
+    confused: &["base_load"],
+    experiment: ["", "a log with a long wait"],
+    form: Form::Model(change),
+};
+
+fn change(model: &mut Model, _: usize, values: &[f64]) {
+    if let Some(brakes) = &mut model.brakes {
+        brakes.power_released_w += values[0];
+    }
+}

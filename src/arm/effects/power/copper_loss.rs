@@ -1,0 +1,28 @@
+//! Loss in the windings.
+
+use crate::arm::robot::Model;
+
+use crate::arm::effects::effect::{Channel, Effect, Form, Scope, every, free};
+
+pub(crate) const COPPER_LOSS: Effect = Effect {
+    id: "copper_loss",
+    channel: Channel::Power,
+    scope: Scope::Joint,
+    title: "Loss in the windings",
+    law: "P = loss·τ²",
+    source: "docs/energy.md",
+    parameters: &[free("loss", "W/(Nm)2", "change of the loss per squared torque")],
+    coordinates: &[],
+    published: None,
+    joints: every,
+    brings: &[],
+    confused: &["inverter_loss"],
+    experiment: ["", "the same program again, logged with its power"],
+    form: Form::Model(change),
+};
+
+fn change(model: &mut Model, joint: usize, values: &[f64]) {
+    if let Some(motors) = &mut model.motors {
+        motors.loss_constant[joint] += values[0];
+    }
+}

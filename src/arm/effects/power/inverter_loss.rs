@@ -1,0 +1,20 @@
+//! Loss of inverter and cables.
+
+use crate::arm::effects::effect::{Channel, Effect, Form, Scope, free};
+
+pub(crate) const INVERTER_LOSS: Effect = Effect {
+    id: "inverter_loss",
+    channel: Channel::Power,
+    scope: Scope::Robot,
+    title: "Loss of inverter and cables",
+    law: "P = per_current·Σ|τ|/(n k_t)",
+    source: "docs/energy.md",
+    parameters: &[free("per_current", "W/A", "loss per current")],
+    coordinates: &[],
+    published: None,
+    joints: |_| vec![0],
+    brings: &[],
+    confused: &["copper_loss", "base_load"],
+    experiment: ["", "the same program again, logged with its power"],
+    form: Form::Elsewhere,
+};

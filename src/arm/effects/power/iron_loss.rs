@@ -1,0 +1,20 @@
+//! Loss in the iron.
+
+use crate::arm::effects::effect::{Channel, Effect, Form, Scope, every, free};
+
+pub(crate) const IRON_LOSS: Effect = Effect {
+    id: "iron_loss",
+    channel: Channel::Power,
+    scope: Scope::Joint,
+    title: "Loss in the iron",
+    law: "P = loss·q̇²",
+    source: "docs/energy.md",
+    parameters: &[free("loss", "W s2/rad2", "loss per squared rate")],
+    coordinates: &[],
+    published: None,
+    joints: every,
+    brings: &[],
+    confused: &["friction_level"],
+    experiment: ["", "the same program again, logged with its power"],
+    form: Form::Elsewhere,
+};

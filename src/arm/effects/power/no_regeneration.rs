@@ -1,0 +1,20 @@
+//! Braking energy that is lost.
+
+use crate::arm::effects::effect::{Channel, Effect, Form, Scope};
+
+pub(crate) const NO_REGENERATION: Effect = Effect {
+    id: "no_regeneration",
+    channel: Channel::Power,
+    scope: Scope::Robot,
+    title: "Braking energy that is lost",
+    law: "P = max(P, 0)",
+    source: "docs/energy.md",
+    parameters: &[],
+    coordinates: &[],
+    published: None,
+    joints: |_| vec![0],
+    brings: &[],
+    confused: &["copper_loss"],
+    experiment: ["", "the same program again, logged with its power"],
+    form: Form::Model(|model, _, _| model.drive.regeneration = 0.0),
+};

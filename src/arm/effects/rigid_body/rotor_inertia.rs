@@ -1,0 +1,28 @@
+//! Rotor and gear inertias that differ from the stated ones.
+
+use crate::arm::robot::Model;
+
+use crate::arm::effects::effect::{Channel, Effect, Form, Scope, every, free, linear};
+
+pub(crate) const ROTOR_INERTIA: Effect = Effect {
+    id: "rotor_inertia",
+    channel: Channel::Torque,
+    scope: Scope::Joint,
+    title: "Inertia of the rotor",
+    law: "τ = inertia·q̈_motor",
+    source: "M. Gautier, W. Khalil, Direct calculation of minimum set of inertial parameters, IEEE T-RA 6, 1990: of axes 1 and 2 grouped with the links",
+    parameters: &[free("inertia", "kg m2", "change of the rotor inertia, at the joint")],
+    coordinates: &[linear(|of| 0.2 * of.rotor)],
+    published: None,
+    joints: every,
+    brings: &[],
+    confused: &["elasticity", "filter_lag", "link_parameters"],
+    experiment: ["--harmonics 1,4,7,11", "faster motion"],
+    form: Form::Model(change),
+};
+
+fn change(model: &mut Model, joint: usize, values: &[f64]) {
+    if let Some(motors) = &mut model.motors {
+        motors.rotor_inertia[joint] += values[0] / (motors.ratio[joint] * motors.ratio[joint]);
+    }
+}
