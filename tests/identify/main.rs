@@ -14,8 +14,8 @@ use joulepath::arm::dynamics::{
 use joulepath::arm::effects::from_toml;
 use joulepath::arm::robot::{Model, to_toml};
 use joulepath::learn::identify::{
-    Equations, Fit, Free, Hints, Known, Samples, Settings, Source, Weighting, fit, identify,
-    prepare, torques,
+    Equations, Fit, Free, Hints, IdentifyError, Known, Samples, Settings, Source, Weighting, fit,
+    identify, prepare, torques,
 };
 use joulepath::learn::log::{Channel, Log};
 use nalgebra::{DMatrix, DVector};
@@ -59,6 +59,25 @@ fn data_without_noise_give_the_robot_back() {
     for (found, truth) in found.solution.beta.iter().zip(truth(&model, &base)) {
         assert!((found - truth).abs() < EXACT * scale, "{found} {truth}");
     }
+}
+
+#[test]
+fn arrays_that_do_not_fit_are_refused() {
+    let model = irb1600();
+    let mut random = fastrand::Rng::with_seed(1);
+    let log = log(&model, &series(1), [10.0, 0.01], With::Rates, [0.0, 0.0], &mut random);
+    let tau = torques(&model, &log).unwrap().tau;
+    let short: Vec<Vec<f64>> = tau.iter().map(|tau| tau[..3].to_vec()).collect();
+    let mut not_finite = tau.clone();
+    not_finite[2][7] = f64::NAN;
+    for wrong in [&[][..], &tau[..5], &short, &not_finite] {
+        let refused = prepare(&log, wrong, Hints::default()).err();
+        assert!(matches!(refused, Some(IdentifyError::Torques { .. })), "{refused:?}");
+    }
+    let mut other = prepare(&log, &tau, Hints::default()).unwrap();
+    other.rest.pop();
+    let refused = identify(&model, &other, &[], &settings(Free::All, Weighting::Joint)).err();
+    assert_eq!(refused, Some(IdentifyError::OtherRobot { logged: 5, dof: 6 }));
 }
 
 /// Ordinary least squares of all rows, by a singular value decomposition.

@@ -29,6 +29,30 @@ pub enum IdentifyError {
         /// Number of unknowns.
         unknowns: usize,
     },
+    /// Torques that do not fit the log.
+    #[error(
+        "{joints} series of torques, the shortest of {rows} rows: give one of {logged} rows for each of {wanted} joints, each value finite"
+    )]
+    Torques {
+        /// Number of series.
+        joints: usize,
+        /// Rows of the shortest one.
+        rows: usize,
+        /// Rows of the log.
+        logged: usize,
+        /// Joints of the log.
+        wanted: usize,
+    },
+    /// The log is of another robot.
+    #[error(
+        "the log has {logged} joints, the robot {dof}: give a position and a torque for each joint"
+    )]
+    OtherRobot {
+        /// Joints of the log.
+        logged: usize,
+        /// Joints of the robot.
+        dof: usize,
+    },
     /// The fixed parameters are unknown.
     #[error(
         "{name} has no dynamics to start from: give its links, [[link]], in a robot file, or identify all with --free all"

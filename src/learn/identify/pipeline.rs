@@ -22,13 +22,20 @@ use super::wrist::wrist_coupling;
 /// Identifies a model from `training`; `validation` is used for prediction only.
 ///
 /// # Errors
-/// There are too few equations, or the model lacks fixed parameters.
+/// The log has another number of joints, there are too few equations, or the model lacks fixed
+/// parameters.
 pub fn identify(
     model: &Model,
     training: &Samples,
     validation: &[Samples],
     settings: &Settings,
 ) -> Result<Identified, IdentifyError> {
+    for samples in std::iter::once(training).chain(validation) {
+        let logged = samples.rest.len();
+        if logged != model.dof {
+            return Err(IdentifyError::OtherRobot { logged, dof: model.dof });
+        }
+    }
     if settings.free != Free::All && !model.has_dynamics() {
         return Err(IdentifyError::NoDynamics { name: model.name.clone() });
     }

@@ -44,12 +44,22 @@ pub struct Hints {
     pub cutoff: Option<f64>,
 }
 
-/// The instants of a log with the joint torques `tau` \[Nm\].
+/// The instants of a log with the joint torques `tau` \[Nm\], by joint, then by row of the log.
 ///
 /// # Errors
-/// No joint moves, or the log is too short for a filter.
+/// Torques that do not fit the log, no joint moves, or the log is too short for a filter.
 pub fn prepare(log: &Log, tau: &[Vec<f64>], hints: Hints) -> Result<Samples, IdentifyError> {
-    let joints = log.joints();
+    let (joints, rows) = (log.joints(), log.time().len());
+    let fits = |series: &Vec<f64>| series.len() == rows && series.iter().all(|tau| tau.is_finite());
+    if tau.len() != joints || !tau.iter().all(fits) {
+        let shortest = tau.iter().map(Vec::len).min().unwrap_or(0);
+        return Err(IdentifyError::Torques {
+            joints: tau.len(),
+            rows: shortest,
+            logged: rows,
+            wanted: joints,
+        });
+    }
     let q = owned(log, Channel::Position).unwrap_or_default();
     let (qd, qdd) = (owned(log, Channel::Velocity), owned(log, Channel::Acceleration));
     let resting: Vec<usize> = (0..joints).filter(|joint| range(&q[*joint]) < MOVES).collect();

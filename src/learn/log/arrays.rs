@@ -12,7 +12,7 @@ impl Log {
     /// [`rejected`](Log::rejected). Rows count from 1.
     ///
     /// # Errors
-    /// No time, a missing joint, fewer than [`MIN_ROWS`](super::MIN_ROWS) usable rows.
+    /// Columns of different lengths, no time, a missing joint, fewer than [`MIN_ROWS`](super::MIN_ROWS) usable rows.
     pub fn from_columns(columns: &[(&str, &[f64])]) -> Result<Log, LogError> {
         let map = ColumnMap::default();
         let names: Vec<String> = columns.iter().map(|(name, _)| (*name).to_owned()).collect();
@@ -20,11 +20,13 @@ impl Log {
         check(&known, &names, &map)?;
         let mut rows = Rows::new(&known);
         let count = columns.iter().map(|(_, values)| values.len()).max().unwrap_or(0);
+        if let Some((name, values)) = columns.iter().find(|(_, values)| values.len() != count) {
+            return Err(LogError::Lengths { name: (*name).into(), rows: values.len(), count });
+        }
         for row in 0..count {
-            let value = |column: &super::columns::Column| match columns[column.index].1.get(row) {
-                Some(value) if value.is_finite() => Ok(value * column.named.unit),
-                Some(value) => Err(format!("{} is '{value}', not a number", column.name)),
-                None => Err(format!("{} is empty", column.name)),
+            let value = |column: &super::columns::Column| match columns[column.index].1[row] {
+                value if value.is_finite() => Ok(value * column.named.unit),
+                value => Err(format!("{} is '{value}', not a number", column.name)),
             };
             let values: Result<Vec<f64>, String> = known.iter().map(value).collect();
             rows.push(row as u64 + 1, values.as_deref().map_err(Clone::clone));
@@ -45,10 +47,13 @@ mod tests {
         let t: Vec<f64> = (0..20).map(|i| 0.01 * f64::from(i)).collect();
         let mut q = vec![90.0; 20];
         q[3] = f64::NAN;
-        let log = Log::from_columns(&[("t", &t), ("q1_deg", &q), ("tau1", &t[..19])]).unwrap();
-        assert_eq!(log.rejected.iter().map(|of| of.row).collect::<Vec<_>>(), [4, 20]);
+        let log = Log::from_columns(&[("t", &t), ("q1_deg", &q), ("tau1", &t)]).unwrap();
+        assert_eq!(log.rejected.iter().map(|of| of.row).collect::<Vec<_>>(), [4]);
         let position = log.column(Channel::Position(0)).unwrap();
-        assert_eq!(position, [std::f64::consts::FRAC_PI_2; 18]);
+        assert_eq!(position, [std::f64::consts::FRAC_PI_2; 19]);
         assert!(matches!(Log::from_columns(&[("q1", &q)]), Err(LogError::NoTime { .. })));
+        let ragged = Log::from_columns(&[("t", &t), ("q1", &q), ("tau1", &t[..19])]);
+        let expected = LogError::Lengths { name: "tau1".into(), rows: 19, count: 20 };
+        assert_eq!(ragged.err(), Some(expected));
     }
 }

@@ -24,6 +24,16 @@ pub enum LogError {
         /// The first row.
         header: String,
     },
+    /// Columns of different lengths.
+    #[error("{name} has {rows} values, another column has {count}: give one for each row")]
+    Lengths {
+        /// The shorter column.
+        name: String,
+        /// Its values.
+        rows: usize,
+        /// The values of the longest column.
+        count: usize,
+    },
     /// An invalid part of a column map.
     #[error("--map {part}: write it as CHANNEL=COLUMN, such as tau1=MotorTorque_1,q1_deg=J1")]
     Map {

@@ -16,15 +16,16 @@ const ROUNDING: f64 = 1e-3;
 const STEP: f64 = 0.03;
 /// Largest number of rounds.
 const ROUNDS: usize = 300;
-/// Largest ratio of the duration to that of the given stream.
+/// Largest ratio of the duration to that of a stream whose speeds and accelerations are near the
+/// limits: a torque beyond its limit at rest stays there at any speed.
 const SLOWEST: f64 = 20.0;
 
 /// The stream as the robot executes it; unchanged if it keeps all limits.
 pub(super) fn within_limits(loaded: Loaded<'_>, stream: Stream) -> Stream {
     let limits = Limits::new(loaded.model);
     let mut data = Data::new();
-    let longest = SLOWEST * stream.duration();
-    let mut late = stream;
+    let mut late = limits.near(stream);
+    let longest = SLOWEST * late.duration();
     for _ in 0..ROUNDS {
         let factors: Vec<f64> =
             late.pieces().map(|piece| limits.longer(loaded, &mut data, &piece)).collect();
@@ -63,6 +64,27 @@ impl Limits {
         }
     }
 
+    /// A stream whose times are far too short for the speeds and accelerations of the robot, slower as a
+    /// whole so that the rounds reach the limits; others unchanged.
+    fn near(&self, stream: Stream) -> Stream {
+        let excess = self.excess(&stream.max_velocity(), &stream.max_acceleration());
+        let slower = excess / (0.5 * SLOWEST);
+        if slower <= 1.0 {
+            return stream;
+        }
+        let intervals = stream.intervals().iter().map(|interval| interval * slower).collect();
+        Stream::new(*stream.start(), stream.points().to_vec(), intervals).unwrap_or(stream)
+    }
+
+    /// How many times too short the times are for these speeds and accelerations.
+    fn excess(&self, qd: &Joints, qdd: &Joints) -> f64 {
+        (0..DOF).fold(0.0, |excess: f64, j| {
+            excess
+                .max(qd[j].abs() / self.velocity[j])
+                .max((qdd[j].abs() / self.acceleration[j]).sqrt())
+        })
+    }
+
     /// Factor on the intervals at a piece; 1 within the limits.
     fn longer(&self, loaded: Loaded<'_>, data: &mut Data, piece: &Piece) -> f64 {
         let mut excess: f64 = 1.0;
@@ -74,11 +96,9 @@ impl Limits {
             } else {
                 [0.0; DOF]
             };
+            excess = excess.max(self.excess(&qd, &qdd));
             for j in 0..DOF {
-                excess = excess
-                    .max(qd[j].abs() / self.velocity[j])
-                    .max((qdd[j].abs() / self.acceleration[j]).sqrt())
-                    .max((tau[j].abs() / self.torque[j]).sqrt());
+                excess = excess.max((tau[j].abs() / self.torque[j]).sqrt());
             }
         }
         if excess > 1.0 + ROUNDING { excess.min(1.0 + STEP) } else { 1.0 }
@@ -98,6 +118,22 @@ mod tests {
         let place = |i: usize| 0.5 - 0.5 * (i as f64 * std::f64::consts::PI / 20.0).cos();
         let point = |i: usize| std::array::from_fn(|j| if j == 0 { place(i) } else { 0.3 });
         Stream::new(point(0), (1..=20).map(point).collect(), vec![interval; 20]).unwrap()
+    }
+
+    #[test]
+    fn no_time_is_too_short_for_the_limits() {
+        let model = robot::find("IRB1600-10/1.45").unwrap();
+        let load = Load::none();
+        let loaded = Loaded { model: &model, load: &load };
+        let within = |found: Joints, limits: &Option<Vec<f64>>| {
+            let limits = limits.as_ref().unwrap();
+            found.iter().zip(limits).all(|(x, most)| *x <= (1.0 + 2.0 * ROUNDING) * most)
+        };
+        for interval in [1e-2, 1e-3, 1e-4, 1e-6] {
+            let late = within_limits(loaded, stream(interval));
+            assert!(within(late.max_velocity(), &model.limits.velocity), "{interval}");
+            assert!(within(late.max_acceleration(), &model.limits.acceleration), "{interval}");
+        }
     }
 
     #[test]
