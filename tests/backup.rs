@@ -42,7 +42,7 @@ fn simulated(path: &Path) -> (Vec<String>, String) {
 }
 
 #[test]
-fn the_task_that_moves_the_robot_is_run_with_the_robot_of_the_backup() {
+fn a_backup_runs_its_motion_task_with_its_own_robot() {
     let backup = backup();
     let (moves, notes) = simulated(backup.path());
     assert_eq!(moves, ["MoveAbsJ", "MoveJ", "MoveL", "MoveL", "MoveAbsJ"]);
@@ -55,7 +55,7 @@ fn the_task_that_moves_the_robot_is_run_with_the_robot_of_the_backup() {
 }
 
 #[test]
-fn several_motion_tasks_are_stated_with_the_way_to_choose() {
+fn several_motion_tasks_cause_a_note_that_names_them() {
     let backup = backup();
     let system = backup.path().join("SYSPAR/SYS.cfg");
     let text = fs::read_to_string(&system).unwrap();
@@ -71,7 +71,7 @@ fn several_motion_tasks_are_stated_with_the_way_to_choose() {
 }
 
 #[test]
-fn several_backups_are_not_one_program() {
+fn several_backups_in_one_folder_cannot_be_simulated() {
     let folder = tempfile::tempdir().unwrap();
     for name in ["monday", "tuesday"] {
         copy(Path::new("fixtures/backup"), &folder.path().join(name));
@@ -86,7 +86,7 @@ fn several_backups_are_not_one_program() {
 }
 
 #[test]
-fn a_robot_that_is_not_known_is_named() {
+fn an_unknown_robot_of_a_backup_is_named_in_the_error() {
     let backup = backup();
     let motion = backup.path().join("SYSPAR/MOC.cfg");
     let text = fs::read_to_string(&motion).unwrap();
@@ -98,7 +98,7 @@ fn a_robot_that_is_not_known_is_named() {
 }
 
 #[test]
-fn parse_reads_every_task_and_tells_what_the_backup_says() {
+fn parse_reads_every_task_and_lists_robot_and_version() {
     let output = joulepath(&["parse", "fixtures/backup", "--format", "json"]);
     let value: Value = serde_json::from_slice(&output.stdout).unwrap();
     let field = |file: &Value, key: &str| file[key].as_str().unwrap_or_default().to_owned();
@@ -140,7 +140,7 @@ const INFO: &str = "BACKINFO/backinfo.txt";
 const NEW: &str = "RAPID/TASK2/PROGMOD/Joulepath.mod";
 
 #[test]
-fn the_retrofit_of_a_backup_is_the_whole_backup() {
+fn the_output_for_a_backup_is_a_complete_backup() {
     for end in ["\n", "\r\n"] {
         let backup = backup();
         let info = backup.path().join(INFO);
@@ -169,7 +169,7 @@ fn the_retrofit_of_a_backup_is_the_whole_backup() {
 }
 
 #[test]
-fn a_backup_is_changed_in_place_and_taken_back() {
+fn undo_restores_a_backup_that_was_changed_in_place() {
     let folder = tempfile::tempdir().unwrap();
     let backup = folder.path().join("monday");
     copy(Path::new("fixtures/backup"), &backup);

@@ -45,7 +45,7 @@ fn same_torques(model: &Model) {
 }
 
 #[test]
-fn virtual_work_is_newton_euler() {
+fn virtual_work_and_newton_euler_give_the_same_torques() {
     same_torques(&robot::find("IRB1600-10/1.45").unwrap());
     for file in ["fixtures/dynamics/skew.toml", "fixtures/dynamics/seven.toml"] {
         same_torques(&robot::load(file).unwrap());
@@ -73,11 +73,11 @@ fn the_same_seed_gives_the_same_bytes() {
 
 /// Names, order and headers of the files do not reveal the kind of a case.
 #[test]
-fn files_are_alike() {
+fn case_files_do_not_reveal_the_kind_of_a_case() {
     for number in 1..=12 {
         let case = blind::case(&short(8), number).unwrap();
         let names: Vec<&str> = case.files.iter().map(|(name, _)| name.as_str()).collect();
-        if is_of_a_program(&case) {
+        if has_a_program(&case) {
             continue;
         }
         let mut expected = vec!["nominal.toml", "log-1.csv", "log-2.csv", "heldout.csv"];
@@ -98,7 +98,7 @@ fn files_are_alike() {
     }
 }
 
-fn is_of_a_program(case: &Case) -> bool {
+fn has_a_program(case: &Case) -> bool {
     case.files.iter().any(|(name, _)| name.starts_with("program/"))
 }
 
@@ -110,11 +110,11 @@ fn first(kind: Kind, settings: &Settings) -> Case {
 
 /// The moves of a program have the stated durations; an extra wait follows the stated move.
 #[test]
-fn programs_run_as_they_say() {
+fn program_logs_agree_with_stated_durations_and_labels() {
     let settings = short(4);
     let cases = (1..80).map(|number| blind::case(&settings, number).unwrap());
     let (mut healthy, mut late) = (0, 0);
-    for case in cases.filter(is_of_a_program) {
+    for case in cases.filter(has_a_program) {
         let program = file(&case, "program/MainModule.mod");
         let log = read_csv(file(&case, "log-1.csv").as_bytes(), &ColumnMap::default()).unwrap();
         let column = |channel| log.column(channel).unwrap();
@@ -159,7 +159,7 @@ fn averaged(column: &[f64], count: usize) -> Vec<f64> {
 
 /// The residual of the nominal model on a healthy log agrees with the label.
 #[test]
-fn healthy_residuals_are_as_stated() {
+fn residuals_of_a_healthy_log_agree_with_its_label() {
     let settings = Settings { cycles: 6, period_s: 8.0, ..Settings::new(21) };
     let case = first(Kind::Healthy, &settings);
     let model = robot::from_toml("nominal.toml", file(&case, "nominal.toml")).unwrap();
@@ -240,7 +240,7 @@ fn diagnosis(verdict: &str, effects: &[Value]) -> Value {
 }
 
 /// Labels and diagnoses with manually counted grades.
-fn graded_by_hand() -> (Vec<Label>, Vec<Value>) {
+fn manually_graded() -> (Vec<Label>, Vec<Value>) {
     let offset =
         |joints: &[usize], class: &[&str], value| said("torque_offset", joints, class, value);
     vec![
@@ -279,8 +279,8 @@ fn hits(grades: &Grades, name: &str) -> (usize, usize) {
 }
 
 #[test]
-fn rates_are_those_counted_by_hand() {
-    let (labels, diagnoses) = graded_by_hand();
+fn rates_agree_with_a_manual_count() {
+    let (labels, diagnoses) = manually_graded();
     let grades = blind::grade(&labels, &diagnoses, None).unwrap();
     for (name, counted) in [
         ("healthy_named", (1, 3)),
@@ -307,8 +307,8 @@ fn rates_are_those_counted_by_hand() {
 }
 
 #[test]
-fn without_its_effect_a_library_may_not_know() {
-    let (labels, diagnoses) = graded_by_hand();
+fn a_left_out_effect_accepts_unknown_or_its_class() {
+    let (labels, diagnoses) = manually_graded();
     let grades = blind::grade(&labels, &diagnoses, Some("torque_offset")).unwrap();
     assert_eq!(grades.cases, 5);
     assert_eq!(hits(&grades, "left_out_unknown_or_class"), (4, 5));
@@ -319,8 +319,8 @@ fn without_its_effect_a_library_may_not_know() {
 }
 
 #[test]
-fn what_is_hardly_there_is_not_asked_for() {
-    let (mut labels, diagnoses) = graded_by_hand();
+fn effects_with_little_evidence_are_not_graded() {
+    let (mut labels, diagnoses) = manually_graded();
     for label in &mut labels {
         for truth in &mut label.effects {
             truth.nats = 0.5;
@@ -332,7 +332,7 @@ fn what_is_hardly_there_is_not_asked_for() {
 }
 
 #[test]
-fn seals_open_and_tell_a_change() {
+fn opening_the_seals_detects_a_changed_key() {
     let labels = vec![
         (label("case-0001", Kind::Healthy, &[]), "salt".to_owned()),
         (label("case-0002", Kind::One, &["cable"]), "pepper".to_owned()),
@@ -368,7 +368,7 @@ fn refused(args: &[&str], way_out: &str) {
 }
 
 #[test]
-fn generated_cases_are_graded() {
+fn grade_reads_the_cases_that_generate_writes() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("cases");
     let shown = out.to_str().unwrap();
@@ -395,12 +395,12 @@ fn generated_cases_are_graded() {
     }
     refused(&["blind", "grade", shown, "--leave-out", "nonsense"], "name one that");
 
-    hostile(&out, shown);
+    damaged_cases_are_refused(&out, shown);
 }
 
 /// No effect of a pair is left out.
 #[test]
-fn of_pairs_nothing_is_left_out() {
+fn cases_with_two_effects_cannot_leave_one_out() {
     let folder = tempfile::tempdir().unwrap();
     let settings = short(13);
     let pairs = (1..200).map(|number| blind::case(&settings, number).unwrap());
@@ -414,7 +414,7 @@ fn of_pairs_nothing_is_left_out() {
 
 /// The library lacks the family; the diagnosis names none of its effects.
 #[test]
-fn families_are_left_out() {
+fn leaving_out_a_family_removes_all_its_effects() {
     let folder = tempfile::tempdir().unwrap();
     let settings = short(13);
     let number = (1..200)
@@ -450,7 +450,7 @@ fn families_are_left_out() {
 }
 
 /// Damaged, missing or changed files.
-fn hostile(out: &Path, shown: &str) {
+fn damaged_cases_are_refused(out: &Path, shown: &str) {
     let diagnosis = out.join("case-0002/diagnosis.json");
     let good = fs::read(&diagnosis).unwrap();
     for (text, way_out) in [

@@ -152,7 +152,7 @@ fn holds(Interval { low, high, .. }: Interval, x: f64) -> bool {
 }
 
 #[test]
-fn intervals_hold_the_truth_as_often_as_they_say() {
+fn calibrated_intervals_contain_the_truth_as_often_as_stated() {
     let model = robot("IRB2600-20/1.65");
     let simulation = simulated(&model, &pick_place());
     let other = simulated(&model, &source(OTHER));
@@ -195,7 +195,7 @@ const BETWEEN: f64 = 1.02;
 
 /// Whether each run of a retrofit needs no larger joint torque than the original cycle, for each
 /// robot with its own dynamics.
-fn asks_no_more(model: &Model, before: &Simulation, after: &Simulation) -> bool {
+fn needs_no_larger_torques(model: &Model, before: &Simulation, after: &Simulation) -> bool {
     let robots = Spread::new(model).draws(model, DRAWS).robots;
     let robots: Vec<Model> = robots.iter().map(|robot| drawn(model, robot).unwrap()).collect();
     let peaks = |robot: &Model, event: &Event| {
@@ -228,7 +228,7 @@ fn asks_no_more(model: &Model, before: &Simulation, after: &Simulation) -> bool 
 }
 
 #[test]
-fn a_calibrated_saving_is_of_use_for_robots_of_all_sizes() {
+fn a_calibrated_saving_has_a_narrow_interval_for_robots_of_all_sizes() {
     let files = pick_place();
     for name in
         ["IRB1600-6/1.45", "IRB2400", "IRB2600-20/1.65", "IRB4600-60/2.05", "IRB6700-200/2.6"]
@@ -251,7 +251,7 @@ fn a_calibrated_saving_is_of_use_for_robots_of_all_sizes() {
             assert!(page.contains(told), "{name}: {told}");
         }
         let Interval { median, low, high } = done.uncertainty.unwrap().saving_percent[1];
-        assert!(asks_no_more(&found.model, &done.before.0, &done.after.0), "{name}");
+        assert!(needs_no_larger_torques(&found.model, &done.before.0, &done.after.0), "{name}");
         let width = 0.5 * (high - low);
         assert!(width <= OF_USE * median && median > 0.0, "{name}: {median} {low} {high}");
     }
@@ -259,7 +259,7 @@ fn a_calibrated_saving_is_of_use_for_robots_of_all_sizes() {
 
 /// In a short program each movement is among those with the largest torques.
 #[test]
-fn few_movements_get_streams_that_ask_no_more() {
+fn streams_of_a_short_program_need_no_larger_torques() {
     let files = source(OTHER);
     let model = robot("IRB7600-400/2.55");
     let settings = Settings { entry: "main".into(), ..Settings::default() };
@@ -268,7 +268,7 @@ fn few_movements_get_streams_that_ask_no_more() {
     assert!(rewritten >= 2, "{:#?}", done.segments);
     let saving = done.uncertainty.unwrap().saving_percent[1];
     assert!(saving.low > 0.0, "{saving:?}");
-    assert!(asks_no_more(&model, &done.before.0, &done.after.0));
+    assert!(needs_no_larger_torques(&model, &done.before.0, &done.after.0));
 }
 
 #[test]
@@ -298,7 +298,7 @@ fn logs_of_other_programs_and_robots_are_refused() {
 }
 
 #[test]
-fn kilowatts_and_numbers_of_movements_and_cycles_are_understood() {
+fn logs_in_kilowatts_and_with_movement_or_cycle_numbers_are_read() {
     let model = robot("IRB2600-20/1.65");
     let program = simulated(&model, &pick_place());
     let plain = calibrate(&model, &program, &log(&model, &program, &METER), None).unwrap();
@@ -318,7 +318,7 @@ fn kilowatts_and_numbers_of_movements_and_cycles_are_understood() {
 
 /// The start of a log determines the first movement of its first pass.
 #[test]
-fn logs_with_numbers_of_movements_may_begin_anywhere() {
+fn logs_with_movement_numbers_may_begin_anywhere() {
     // For a large robot the power of movements is many times that of waits.
     let model = robot("IRB7600-400/2.55");
     let program = simulated(&model, &source(OTHER));
@@ -334,7 +334,7 @@ fn logs_with_numbers_of_movements_may_begin_anywhere() {
 const BEGINS: u64 = 8;
 
 #[test]
-fn nothing_that_is_read_is_written_over() {
+fn input_files_are_not_overwritten() {
     let folder = tempfile::tempdir().unwrap();
     let program = folder.path().join("m.mod");
     std::fs::write(&program, OTHER).unwrap();
@@ -359,7 +359,7 @@ fn nothing_that_is_read_is_written_over() {
 }
 
 #[test]
-fn torques_tell_more_than_power_alone() {
+fn logged_torques_narrow_the_friction_more_than_power_alone() {
     let model = robot("IRB2600-20/1.65");
     let program = simulated(&model, &pick_place());
     let spread = Spread::new(&model);
@@ -382,7 +382,7 @@ fn torques_tell_more_than_power_alone() {
 }
 
 #[test]
-fn logs_without_use_are_refused() {
+fn unusable_logs_are_refused() {
     let model = robot("IRB2600-20/1.65");
     let program = simulated(&model, &pick_place());
     let own = log(&model, &program, &METER);
@@ -409,7 +409,7 @@ fn logs_without_use_are_refused() {
 }
 
 #[test]
-fn a_calibrated_robot_is_read_back_as_it_was() {
+fn a_calibrated_robot_is_unchanged_after_writing_and_reading() {
     let model = robot("IRB2600-20/1.65");
     let program = simulated(&model, &pick_place());
     let found = calibrate(&model, &program, &log(&model, &program, &METER), None).unwrap();

@@ -15,12 +15,12 @@ const CYCLES: usize = 4;
 /// Rate below which a joint counts as at rest \[rad/s\].
 const RESTS: f64 = 0.02;
 /// Tolerance relative to the claim, and relative to the noise of the mean.
-const OF_CLAIM: f64 = 0.05;
-const OF_NOISE: f64 = 0.25;
+const CLAIM_TOLERANCE: f64 = 0.05;
+const NOISE_TOLERANCE: f64 = 0.25;
 /// Offset of an angle against its log \[rad\].
 const OFFSET: f64 = 0.04;
 /// Tolerance of the claimed reduction in percentage points.
-const OF_SHRINK: f64 = 4.0;
+const SHRINK_TOLERANCE: f64 = 4.0;
 
 fn joulepath(args: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_joulepath")).args(args).output().unwrap()
@@ -33,7 +33,7 @@ fn log(text: &str) -> Log {
 
 /// Rms of the residuals and of the torques by joint: of the mean of the repetitions, while the
 /// joint moves.
-fn missed(robot: &str, held: &str) -> [Vec<f64>; 2] {
+fn residuals(robot: &str, held: &str) -> [Vec<f64>; 2] {
     let output = joulepath(&["predict", "--robot", robot, "--log", held, "--quiet"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let predicted: Vec<Vec<f64>> = String::from_utf8(output.stdout)
@@ -75,15 +75,15 @@ fn case(seed: u64, number: usize) -> Case {
 }
 
 /// Verifies the claims for an examination case with the effect `id`; returns the reduction, %.
-fn of_case(seed: u64, number: usize, id: &str) -> f64 {
+fn check_case(seed: u64, number: usize, id: &str) -> f64 {
     let case = case(seed, number);
     assert!(case.label.effects.iter().any(|truth| truth.id == id), "{:?}", case.label.effects);
-    holds(&case, id)
+    check_claims(&case, id)
 }
 
 /// Diagnoses a case with one effect of the library and verifies its claims with `predict`; returns
 /// the reduction, %.
-fn holds(case: &Case, id: &str) -> f64 {
+fn check_claims(case: &Case, id: &str) -> f64 {
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in &case.files {
         fs::write(folder.path().join(name), text).unwrap();
@@ -99,8 +99,8 @@ fn holds(case: &Case, id: &str) -> f64 {
     let found: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(found["effects"][0]["id"], id, "{found:#}");
     let gap = &found["gap"][0];
-    let [before, size] = missed(&nominal, &held);
-    let [after, _] = missed(&better, &held);
+    let [before, size] = residuals(&nominal, &held);
+    let [after, _] = residuals(&better, &held);
     let mut sums = [0.0; 2];
     for (joint, claim) in gap["per_joint"].as_array().unwrap().iter().enumerate() {
         let of = |name: &str| claim[name].as_f64().unwrap();
@@ -108,7 +108,7 @@ fn holds(case: &Case, id: &str) -> f64 {
         let pairs = [(of("model"), before[joint]), (of("refit_plus_effect"), after[joint])];
         for (k, (claimed, rms)) in pairs.into_iter().enumerate() {
             let recomputed = (rms * rms - noise * noise).max(0.0).sqrt();
-            let may = OF_CLAIM * claimed + OF_NOISE * noise;
+            let may = CLAIM_TOLERANCE * claimed + NOISE_TOLERANCE * noise;
             assert!(
                 (recomputed - claimed).abs() <= may,
                 "{id}, joint {}: claimed {claimed}, recomputed {recomputed}, noise {noise}",
@@ -119,33 +119,33 @@ fn holds(case: &Case, id: &str) -> f64 {
     }
     let shrink = 100.0 * (1.0 - (sums[1] / sums[0]).sqrt());
     let claimed = gap["shrink_percent"]["value"].as_f64().unwrap();
-    assert!((shrink - claimed).abs() <= OF_SHRINK, "{id}: claimed {claimed} %, {shrink} %");
+    assert!((shrink - claimed).abs() <= SHRINK_TOLERANCE, "{id}: claimed {claimed} %, {shrink} %");
     claimed
 }
 
 #[test]
-fn of_a_payload() {
-    of_case(11, 24, "payload");
+fn claims_hold_for_a_payload() {
+    check_case(11, 24, "payload");
 }
 
 #[test]
-fn of_stiction() {
-    of_case(14, 40, "stribeck");
+fn claims_hold_for_stiction() {
+    check_case(14, 40, "stribeck");
 }
 
 #[test]
-fn of_a_delay() {
-    of_case(12, 38, "time_delay");
+fn claims_hold_for_a_time_delay() {
+    check_case(12, 38, "time_delay");
 }
 
 #[test]
-fn of_a_flipped_sign() {
-    of_case(13, 53, "current_sign");
+fn claims_hold_for_a_flipped_current_sign() {
+    check_case(13, 53, "current_sign");
 }
 
 /// A healthy robot with an offset of the second angle in its logs.
 #[test]
-fn of_an_encoder_offset() {
+fn claims_hold_for_an_encoder_offset() {
     let mut case = case(11, 5);
     for (_, text) in case.files.iter_mut().filter(|(_, text)| text.starts_with("t,")) {
         let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
@@ -157,40 +157,40 @@ fn of_an_encoder_offset() {
         }
         *text = lines.join("\n") + "\n";
     }
-    holds(&case, "encoder_offset");
+    check_claims(&case, "encoder_offset");
 }
 
 #[test]
-fn of_a_tilted_base() {
-    of_case(12, 13, "base_tilt");
+fn claims_hold_for_a_tilted_base() {
+    check_case(12, 13, "base_tilt");
 }
 
 #[test]
-fn of_a_coupled_wrist() {
-    of_case(13, 38, "wrist_coupling");
+fn claims_hold_for_a_coupled_wrist() {
+    check_case(13, 38, "wrist_coupling");
 }
 
 /// Friction of motor 6 with a smooth change of sign over a few per cent of its rate: rows at such
 /// slow rates contain no information on its coupling.
 #[test]
-fn of_a_coupled_wrist_whose_friction_is_rounded() {
-    let shrink = of_case(13, 1, "wrist_coupling");
+fn claims_hold_for_a_coupled_wrist_with_smooth_friction() {
+    let shrink = check_case(13, 1, "wrist_coupling");
     assert!(shrink > 75.0, "{shrink}");
 }
 
 #[test]
-fn of_a_dragging_brake() {
-    of_case(13, 35, "brake_drag");
+fn claims_hold_for_a_dragging_brake() {
+    check_case(13, 35, "brake_drag");
 }
 
 #[test]
-fn of_a_force_from_outside() {
-    of_case(13, 26, "contact");
+fn claims_hold_for_an_external_force() {
+    check_case(13, 26, "contact");
 }
 
 /// A robot that is cold at the start of the log clock and warms up.
 #[test]
-fn warming_up_counts_by_the_clock_of_the_logs() {
+fn warm_up_friction_depends_on_the_time_in_the_log() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name).display().to_string();
     let model = at("cold.toml");

@@ -43,7 +43,7 @@ fn energy(result: &Value) -> f64 {
 }
 
 #[test]
-fn no_other_cost_saves_more_joules() {
+fn no_other_cost_function_saves_more_energy() {
     let electrical = energy(&optimize("", &["--energy", "electrical"]));
     let others = ["electrical-no-regeneration", "mechanical", "velocity", "torque"]
         .map(|cost| energy(&optimize("", &["--energy", cost])));
@@ -55,7 +55,7 @@ fn no_other_cost_saves_more_joules() {
 }
 
 #[test]
-fn curves_fall_and_stay_above_their_bounds() {
+fn energy_time_curves_fall_and_stay_above_their_bounds() {
     let result = optimize("", &["--pareto", "6", "--allow-faster-tcp"]);
     let number = |value: &Value, key: &str| value[key].as_f64().unwrap();
     let mut curves = 0;
@@ -77,7 +77,7 @@ fn curves_fall_and_stay_above_their_bounds() {
 }
 
 #[test]
-fn what_the_cell_keeps_free_holds_for_free_paths_only() {
+fn keep_out_zones_restrict_only_free_paths() {
     let free = ["--free-path", "--deviation", "80"];
     let alone = energy(&optimize("", &free));
     let kept = energy(&optimize("", &[]));

@@ -25,7 +25,7 @@ fn case(folder: &Path) {
 }
 
 #[test]
-fn the_json_has_what_is_promised() {
+fn the_json_has_the_fields_of_the_contract() {
     let folder = tempfile::tempdir().unwrap();
     case(folder.path());
     let at = |name: &str| folder.path().join(name).display().to_string();
@@ -60,7 +60,7 @@ fn the_json_has_what_is_promised() {
     {
         assert!(value.get(key).is_some(), "no {key}");
     }
-    regimes_add_up(&value["where"]);
+    assert_shares_add_up(&value["where"]);
     let gap = &value["gap"][0];
     assert_eq!(gap["per_joint"].as_array().unwrap().len(), 6);
     for key in ["noise", "model", "refit", "refit_plus_effect"] {
@@ -83,7 +83,7 @@ fn the_json_has_what_is_promised() {
 }
 
 /// The thirds of a quantity add up to the share of its joint, the effects to that of their third.
-fn regimes_add_up(places: &Value) {
+fn assert_shares_add_up(places: &Value) {
     let places = places.as_array().unwrap();
     let share = |place: &Value| place["share_percent"].as_f64().unwrap();
     let of = |joint: u64, quantity: &str| -> Vec<&Value> {
@@ -112,7 +112,7 @@ fn regimes_add_up(places: &Value) {
 
 /// Of a single log the last repetitions are held out.
 #[test]
-fn of_one_log_the_last_cycles_are_held_out() {
+fn the_last_cycles_of_a_single_log_are_held_out() {
     let folder = tempfile::tempdir().unwrap();
     let settings = Settings { cycles: 5, period_s: 4.0, ..Settings::new(5) };
     let made = blind::case(&settings, 3).unwrap();
@@ -151,7 +151,7 @@ fn of_one_log_the_last_cycles_are_held_out() {
 
 /// A wrong stated period causes a note, and the true period is used.
 #[test]
-fn wrong_periods_are_told() {
+fn a_wrong_period_is_reported_and_corrected() {
     let folder = tempfile::tempdir().unwrap();
     case(folder.path());
     let at = |name: &str| folder.path().join(name).display().to_string();

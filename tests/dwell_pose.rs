@@ -81,7 +81,7 @@ fn rewritten(result: &Value) -> Vec<u64> {
 }
 
 #[test]
-fn a_wait_is_spent_where_holding_takes_less() {
+fn a_wait_moves_to_a_pose_with_less_holding_power() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let standing = optimize(folder, &program(""), &[]);
@@ -117,7 +117,7 @@ fn a_wait_is_spent_where_holding_takes_less() {
 }
 
 #[test]
-fn a_wait_after_an_output_moves_only_where_its_line_says_so() {
+fn a_wait_after_an_output_moves_only_with_a_free_comment() {
     let folder = tempfile::tempdir().unwrap();
     let text = program(" ! joulepath: free");
     let result = optimize(folder.path(), &text, &["--dwell-pose"]);
@@ -125,7 +125,7 @@ fn a_wait_after_an_output_moves_only_where_its_line_says_so() {
 }
 
 #[test]
-fn a_wait_whose_length_may_change_stays() {
+fn a_wait_of_variable_length_does_not_move() {
     let folder = tempfile::tempdir().unwrap();
     let constant = "CONST num nCool:=40;\nPROC main()";
     for (declared, lines) in [
@@ -141,7 +141,7 @@ fn a_wait_whose_length_may_change_stays() {
 }
 
 #[test]
-fn what_the_cell_keeps_free_is_not_entered() {
+fn dwell_poses_stay_out_of_keep_out_zones() {
     let folder = tempfile::tempdir().unwrap();
     // No part of the arm may rise above its height in the extended pose.
     fs::write(
@@ -154,7 +154,7 @@ fn what_the_cell_keeps_free_is_not_entered() {
 }
 
 #[test]
-fn distances_that_cannot_be_meant_say_the_way_out() {
+fn impossible_distances_are_refused_with_the_way_out() {
     let folder = tempfile::tempdir().unwrap();
     for (option, says) in [("--dwell-pose=-3", "more than 0"), ("--dwell-pose=180", "at most 90")] {
         let output = command(folder.path(), &program(""), &[option]);
@@ -168,7 +168,7 @@ fn distances_that_cannot_be_meant_say_the_way_out() {
 }
 
 #[test]
-fn another_tool_waits_where_it_stands() {
+fn the_original_wait_runs_with_a_changed_tool() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let tool =

@@ -31,7 +31,7 @@ fn excite(folder: &tempfile::TempDir, more: &[&str]) -> Value {
 }
 
 /// The modules parse without errors and without tolerances.
-fn is_rapid(folder: &tempfile::TempDir) {
+fn assert_valid_rapid(folder: &tempfile::TempDir) {
     for name in ["JoulepathExcitation.mod", "JoulepathLogger.mod"] {
         let bytes = fs::read(folder.path().join(name)).unwrap();
         let parse = syntax::parse(&bytes);
@@ -41,12 +41,12 @@ fn is_rapid(folder: &tempfile::TempDir) {
 }
 
 #[test]
-fn the_motion_tells_all_parameters_within_all_limits() {
+fn the_motion_determines_all_parameters_within_all_limits() {
     let folder = tempfile::tempdir().unwrap();
     let found = excite(&folder, &["--plane", "1,0,0,-0.8"]);
     assert_eq!(found["rank"], 58);
     assert!(found["condition"]["scaled"].as_f64().unwrap() <= CONDITION, "{found}");
-    is_rapid(&folder);
+    assert_valid_rapid(&folder);
 
     let model = find(ROBOT).unwrap();
     let csv = fs::read_to_string(folder.path().join("excitation.csv")).unwrap();
@@ -112,7 +112,7 @@ fn arm_and_tool_stay_out_of_a_box() {
 }
 
 #[test]
-fn small_experiments_are_rapid_too() {
+fn small_experiments_are_valid_rapid() {
     for (variant, more) in
         [("friction", &[][..]), ("wrist", &["--torque", "motor-torque", "--spacing", "adaptive"])]
     {
@@ -122,7 +122,7 @@ fn small_experiments_are_rapid_too() {
             assert!(ratio.as_f64().unwrap() <= 1.0, "{variant}: {what} {ratio}");
         }
         assert!(found["self_margin_m"].as_f64().unwrap() >= 0.0);
-        is_rapid(&folder);
+        assert_valid_rapid(&folder);
         let logger = fs::read_to_string(folder.path().join("JoulepathLogger.mod")).unwrap();
         assert_eq!(logger.contains("TestSignDefine"), more.is_empty());
         let ratio = find(ROBOT).unwrap().motors.unwrap().ratio[3];
@@ -132,7 +132,7 @@ fn small_experiments_are_rapid_too() {
 }
 
 #[test]
-fn wrong_options_say_the_way_out() {
+fn wrong_options_are_refused_with_the_way_out() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
     for (more, message) in [
@@ -186,7 +186,7 @@ fn impossible_numbers_are_refused_at_once() {
 
 /// Repetitions of points with rounded intervals would exceed the period.
 #[test]
-fn adaptive_points_make_a_whole_period() {
+fn adaptive_intervals_add_up_to_the_period() {
     let folder = tempfile::tempdir().unwrap();
     let found = excite(&folder, &["--spacing", "adaptive", "--plane", "1,0,0,-0.8"]);
     let text = fs::read_to_string(folder.path().join("JoulepathExcitation.mod")).unwrap();

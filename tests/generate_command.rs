@@ -109,7 +109,7 @@ fn points_become_movements_that_reach_them() {
 }
 
 #[test]
-fn guided_motion_gets_its_positions_and_a_module() {
+fn externally_guided_motion_gets_positions_and_a_module() {
     let folder = tempfile::tempdir().unwrap();
     let output = generate(folder.path(), &trajectory(2.0), &["--as", "egm"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -122,7 +122,7 @@ fn guided_motion_gets_its_positions_and_a_module() {
 }
 
 #[test]
-fn what_cannot_be_done_writes_nothing_and_says_why() {
+fn unusable_input_is_refused_without_output() {
     for (csv, options, part) in [
         (trajectory(0.4), &[][..], "times as long"),
         (trajectory(2.0), &["--as", "movej"], "timed trajectory becomes joint targets"),

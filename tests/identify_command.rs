@@ -131,7 +131,7 @@ fn the_result_has_the_fields_of_the_contract_and_the_model_predicts() {
 }
 
 #[test]
-fn what_is_repaired_is_said() {
+fn repairs_of_a_log_are_reported() {
     let bench = Bench::new();
     let mut broken = cells(&rows());
     broken[10][3] = "NaN".into();
@@ -179,7 +179,7 @@ fn what_is_repaired_is_said() {
 }
 
 #[test]
-fn what_can_not_be_used_ends_with_the_way_out() {
+fn unusable_logs_are_refused_with_the_way_out() {
     let bench = Bench::new();
     let scaled = |columns: std::ops::Range<usize>, by: &dyn Fn(usize) -> f64| {
         let mut all = rows();
@@ -247,7 +247,7 @@ fn what_can_not_be_used_ends_with_the_way_out() {
 
 /// Torques unrelated to the motion: reversed, delayed, or noise.
 #[test]
-fn torques_of_something_else_are_no_model() {
+fn torques_unrelated_to_the_motion_are_refused() {
     let bench = Bench::new();
     let tau = 19..25;
     let all = rows();
@@ -279,7 +279,7 @@ fn torques_of_something_else_are_no_model() {
 
 /// The many parameters explain a disturbance of three seconds, but do not predict it.
 #[test]
-fn what_explains_only_its_own_data_is_not_good() {
+fn an_overfitted_model_is_not_graded_good() {
     let bench = Bench::new();
     let mut all = rows();
     all.truncate(120);
@@ -297,7 +297,7 @@ fn what_explains_only_its_own_data_is_not_good() {
 }
 
 #[test]
-fn a_constant_joint_is_named() {
+fn a_joint_that_does_not_move_is_reported() {
     let bench = Bench::new();
     let mut all = rows();
     for row in &mut all {
@@ -319,7 +319,7 @@ fn a_constant_joint_is_named() {
 /// The fit of the paper cannot be better than the unconstrained one; it starts with the true
 /// parameters of the robot file.
 #[test]
-fn the_descent_of_the_paper_comes_near_the_free_fit() {
+fn the_descent_of_the_paper_is_close_to_the_unconstrained_fit() {
     let bench = Bench::new();
     let log = bench.write(&header(), &cells(&rows()), ",");
     let ordinary = ["--method", "ordinary", "--descent", "--format", "json", "-q"];
@@ -357,7 +357,7 @@ fn without_motors(bench: &Bench) -> PathBuf {
 
 /// Without gear ratios, motor torques are recognised only by the carried weight.
 #[test]
-fn torques_that_carry_too_little_are_no_good_model() {
+fn torques_too_small_for_the_weight_are_graded_poor() {
     let bench = Bench::new();
     let robot = without_motors(&bench);
     let ratio = find(ROBOT).unwrap().motors.unwrap().ratio;
@@ -377,7 +377,7 @@ fn torques_that_carry_too_little_are_no_good_model() {
 
 /// With a URDF without gear ratios the rotors are at the joints; the written model can be read.
 #[test]
-fn a_model_without_ratios_is_written_so_that_it_can_be_read() {
+fn a_model_without_gear_ratios_can_be_read_back() {
     let bench = Bench::new();
     let robot = without_motors(&bench);
     // Heavy rotors on all joints.
@@ -399,7 +399,7 @@ fn a_model_without_ratios_is_written_so_that_it_can_be_read() {
 }
 
 #[test]
-fn a_log_in_which_nothing_moves_is_refused() {
+fn a_log_without_motion_is_refused() {
     let bench = Bench::new();
     let first = rows().remove(0);
     let still: Vec<Vec<f64>> = (0..ROWS)
@@ -419,7 +419,7 @@ fn a_log_in_which_nothing_moves_is_refused() {
 }
 
 #[test]
-fn options_that_do_not_fit_the_logs_are_said() {
+fn options_that_do_not_fit_the_logs_are_reported() {
     let bench = Bench::new();
     let log = bench.write(&header(), &cells(&rows()), ",");
     let log = log.to_str().unwrap();
@@ -445,7 +445,7 @@ fn options_that_do_not_fit_the_logs_are_said() {
 
 /// With a delay of 10 to 100 ms torques are still explained well; the delay is reported.
 #[test]
-fn a_short_delay_is_named() {
+fn a_short_delay_is_reported() {
     let bench = Bench::new();
     for (delay, least, most) in [(0, f64::NAN, f64::NAN), (1, 0.015, 0.035), (3, 0.06, 0.09)] {
         let all = rows();
@@ -470,7 +470,7 @@ fn a_short_delay_is_named() {
 
 /// One motor-side joint makes a model bad, independent of the other joints.
 #[test]
-fn the_worst_joint_counts() {
+fn the_worst_joint_determines_the_grade() {
     let bench = Bench::new();
     let mut all = rows();
     let mut random = fastrand::Rng::with_seed(3);
@@ -485,7 +485,7 @@ fn the_worst_joint_counts() {
 
 /// The held-out error is that of the written model, not of the unconstrained fit.
 #[test]
-fn without_other_logs_the_written_model_is_judged() {
+fn the_validation_error_is_that_of_the_written_model() {
     let bench = Bench::new();
     let mut all = rows();
     // Negative friction, which no physical model has.
@@ -500,7 +500,7 @@ fn without_other_logs_the_written_model_is_judged() {
 }
 
 #[test]
-fn many_rows_of_one_kind_are_summed_up() {
+fn many_rejected_rows_are_summarised() {
     let bench = Bench::new();
     let mut broken = cells(&rows());
     for row in broken.iter_mut().step_by(20) {
@@ -513,7 +513,7 @@ fn many_rows_of_one_kind_are_summed_up() {
 }
 
 #[test]
-fn what_a_resting_joint_keeps_is_not_called_identified() {
+fn values_of_a_resting_joint_are_not_called_identified() {
     let bench = Bench::new();
     let mut all = rows();
     for row in &mut all {

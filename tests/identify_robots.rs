@@ -66,7 +66,7 @@ fn identified(urdf: &str, csv: &str, joints: usize, rates: bool) -> Option<Ident
         let found = identify(&model, &training, &[held_out], &settings).unwrap();
         assert!(found.physically_consistent);
         assert_eq!(found.quality.late, None);
-        misses_little_more(urdf, &found);
+        assert_close_to_the_unconstrained_fit(urdf, &found);
         // The written model is read without a change.
         let again = from_toml("written", &to_toml(&found.model)).unwrap();
         assert_eq!(again.sensors, found.model.sensors);
@@ -76,7 +76,7 @@ fn identified(urdf: &str, csv: &str, joints: usize, rates: bool) -> Option<Ident
 }
 
 /// The written model compared with the unconstrained fit, on held-out time.
-fn misses_little_more(name: &str, found: &Identified) {
+fn assert_close_to_the_unconstrained_fit(name: &str, found: &Identified) {
     let free = &found.unconstrained_validation.as_ref().unwrap().rms;
     let written = &found.validation.as_ref().unwrap().rms;
     let ratios: Vec<f64> = written.iter().zip(free).map(|(a, b)| a / b).collect();
@@ -141,7 +141,7 @@ fn staubli_tx40_has_the_published_friction_and_a_coupled_wrist() {
 }
 
 #[test]
-fn universal_robots_ur10() {
+fn a_ur10_is_predicted_within_the_known_errors() {
     let (urdf, csv) =
         ("ur10_unisa/ur10_cb3_mdh_dummy_inertia.urdf", "ur10_unisa/ur10_exciting_trajectory.csv");
     let Some(found) = identified(urdf, csv, 6, true) else { return };
@@ -151,7 +151,7 @@ fn universal_robots_ur10() {
 }
 
 #[test]
-fn franka_panda() {
+fn a_panda_is_predicted_within_the_known_errors() {
     let (urdf, csv) =
         ("ur10_unisa/panda_mdh_dummy_inertia.urdf", "ur10_unisa/panda_exciting_trajectory.csv");
     let Some(found) = identified(urdf, csv, 7, true) else { return };

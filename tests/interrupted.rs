@@ -29,7 +29,7 @@ fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
 }
 
 #[test]
-fn a_kill_at_any_moment_leaves_all_or_nothing() {
+fn killing_a_run_leaves_complete_output_or_none() {
     let folder = tempfile::tempdir().unwrap();
     let program = "fixtures/hard/encoding.mod";
     let whole = folder.path().join("whole");
@@ -55,7 +55,7 @@ fn a_kill_at_any_moment_leaves_all_or_nothing() {
 }
 
 #[test]
-fn its_own_output_has_nothing_left_to_do() {
+fn a_second_retrofit_changes_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let (once, twice) = (folder.path().join("once"), folder.path().join("twice"));
     assert!(optimize("fixtures/paper", &once).status().unwrap().success());

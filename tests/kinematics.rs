@@ -60,7 +60,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..Default::default() })]
 
     #[test]
-    fn inverse_contains_the_angles(shares in shares(), which in 0usize..3) {
+    fn inverse_kinematics_contain_the_original_angles(shares in shares(), which in 0usize..3) {
         let model = &robots()[which];
         let q = inside(model, shares);
         let pose = fk(model, &q);
@@ -73,7 +73,7 @@ proptest! {
     }
 
     #[test]
-    fn configuration_leads_back(shares in shares(), which in 0usize..2) {
+    fn the_configuration_selects_the_original_angles(shares in shares(), which in 0usize..2) {
         let model = &robots()[which];
         let q = inside(model, shares);
         let found = ik_conf(model, &fk(model, &q), conf_of(model, &q)).unwrap();
@@ -109,7 +109,7 @@ proptest! {
     }
 
     #[test]
-    fn jacobian_is_the_change_of_pose(shares in shares(), which in 0usize..3) {
+    fn jacobian_is_the_derivative_of_the_pose(shares in shares(), which in 0usize..3) {
         let model = &robots()[which];
         let q = inside(model, shares);
         let tool = tool();
@@ -132,7 +132,7 @@ proptest! {
     }
 
     #[test]
-    fn jacobian_dot_is_the_change_of_the_jacobian(
+    fn jacobian_dot_is_the_derivative_of_the_jacobian(
         shares in shares(),
         qd in prop::array::uniform6(-3.0..3.0),
         which in 0usize..3,
@@ -148,7 +148,7 @@ proptest! {
 }
 
 #[test]
-fn home_pose_of_the_irb1600() {
+fn the_irb1600_has_the_known_home_pose() {
     let model = irb1600();
     let q = [0.0, 0.0, 0.0, 0.0, 30f64.to_radians(), 0.0];
     let pose = fk(&model, &q);
@@ -170,7 +170,7 @@ fn shoulder_singular() -> [f64; 6] {
 
 /// At poses with coinciding solutions, each solution gives the pose.
 #[test]
-fn singular_poses_have_finite_solutions() {
+fn solutions_of_singular_poses_give_the_pose() {
     let shoulder = shoulder_singular();
     for degrees in [
         [0.0; 6],
@@ -191,7 +191,7 @@ fn singular_poses_have_finite_solutions() {
 /// Random arms of the whole catalogue in one, two or three singularities at once, and at the limit
 /// of their reach.
 #[test]
-fn no_singularity_of_any_robot_gives_a_number_that_is_none() {
+fn angles_in_singularities_are_finite_for_every_robot() {
     for name in joulepath::arm::robot::names() {
         let model = find(name).unwrap();
         if model.dof != 6 {
@@ -243,7 +243,7 @@ fn no_singularity_of_any_robot_gives_a_number_that_is_none() {
 }
 
 #[test]
-fn wrist_singularity_keeps_joint_4() {
+fn a_wrist_singularity_keeps_joint_4() {
     let model = irb1600();
     let q = deg([10.0, 20.0, 30.0, 70.0, 0.0, 50.0]);
     let found = ik_near(&model, &fk(&model, &q), &q).unwrap();
@@ -281,7 +281,7 @@ fn angles_at_an_edge_belong_to_both_quarter_turns() {
 }
 
 #[test]
-fn poses_without_a_solution_say_why() {
+fn poses_without_a_solution_have_a_reason() {
     let model = irb1600();
     let pose = |x: f64, y: f64, z: f64| {
         Isometry3::from_parts(

@@ -37,7 +37,7 @@ fn codes(args: &[&str], folder: &Path) -> Vec<String> {
 }
 
 #[test]
-fn exit_codes_are_those_of_the_contract() {
+fn exit_codes_agree_with_the_contract() {
     let folder = folder("EW102_stop_in_line.mod");
     let code = |args: &[&str]| {
         let args = [&["lint", "."], args].concat();
@@ -56,7 +56,7 @@ fn exit_codes_are_those_of_the_contract() {
 }
 
 #[test]
-fn rules_are_selected() {
+fn options_and_configuration_select_rules() {
     let folder = folder("EW101_unneeded_stop_point.mod");
     let only = codes(&["--select", "stops"], folder.path());
     assert!(!only.is_empty() && only.iter().all(|code| code.starts_with("EW1")), "{only:?}");
@@ -80,7 +80,7 @@ fn rules_are_selected() {
 }
 
 #[test]
-fn a_baseline_takes_back_what_is_known() {
+fn a_baseline_hides_known_findings() {
     let folder = folder("EW101_unneeded_stop_point.mod");
     let before = codes(&["--write-baseline", "known.json"], folder.path());
     assert!(!before.is_empty());
@@ -128,7 +128,7 @@ fn fixes_are_shown_and_written() {
 
 #[cfg(unix)]
 #[test]
-fn protected_files_stay_and_links_stay_links() {
+fn read_only_files_are_kept_and_links_stay_links() {
     use std::os::unix::fs::{PermissionsExt, symlink};
     let folder = folder("EW103_tiny_zone.mod");
     let path = folder.path().join("Cell.mod");
@@ -152,7 +152,7 @@ fn protected_files_stay_and_links_stay_links() {
 
 /// A program with an absurd number does not use up the budget of the others.
 #[test]
-fn endless_energy_is_not_added() {
+fn infinite_energies_are_left_out_of_the_total() {
     let folder = folder("EW101_unneeded_stop_point.mod");
     let endless = "MODULE M\nPROC main()\n  MoveAbsJ [[0,0,0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],\
                    v1000,fine,tool0;\n  WaitTime 1E308;\n  WaitTime 1E308;\nENDPROC\nENDMODULE\n";
@@ -165,7 +165,7 @@ fn endless_energy_is_not_added() {
 }
 
 #[test]
-fn nobody_has_to_read_on() {
+fn a_closed_output_pipe_is_no_error() {
     let folder = tempfile::tempdir().unwrap();
     let text = "MODULE M\nPROC main()\n  MoveJ pGone,v100,fine,tool0;\nENDPROC\nENDMODULE\n";
     for index in 0..1_000 {
@@ -187,7 +187,7 @@ fn nobody_has_to_read_on() {
 
 /// Without a robot, unknown joules are not 0 J.
 #[test]
-fn statistics_tell_joules_where_there_are_some() {
+fn statistics_show_joules_only_with_a_robot() {
     let folder = folder("EW102_stop_in_line.mod");
     let last = |args: &[&str]| {
         let args = [&["lint", ".", "--statistics", "--select", "EW102"], args].concat();
@@ -200,7 +200,7 @@ fn statistics_tell_joules_where_there_are_some() {
 }
 
 #[test]
-fn what_has_no_joules_is_told() {
+fn the_reason_for_missing_joules_is_reported() {
     let folder = folder("EW102_stop_in_line.mod");
     let said = |args: &[&str]| text(&joulepath(args, folder.path()).stderr);
     let lint = |more: &[&str]| said(&[&["lint", "Cell.mod"], more].concat());
@@ -219,11 +219,11 @@ fn what_has_no_joules_is_told() {
 fn backup(io: &str, motion: &str) -> tempfile::TempDir {
     let program = "MODULE M\n    PROC main()\n        WaitTime 60;\n        WaitTime 5;\n    \
                    ENDPROC\nENDMODULE\n";
-    backup_of(program, io, motion)
+    backup_with_program(program, io, motion)
 }
 
 /// A backup of a program.
-fn backup_of(program: &str, io: &str, motion: &str) -> tempfile::TempDir {
+fn backup_with_program(program: &str, io: &str, motion: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let modules = folder.path().join("RAPID/TASK1/PROGMOD");
     fs::create_dir_all(&modules).unwrap();
@@ -235,7 +235,7 @@ fn backup_of(program: &str, io: &str, motion: &str) -> tempfile::TempDir {
 }
 
 #[test]
-fn backups_are_asked_for_settings_that_save() {
+fn backups_without_energy_saving_settings_have_findings() {
     let signal = "EIO:CFG_1.0:6:1::\n#\nEIO_SIGNAL:\n\n      -Name \"diSyEnEnSav\" -SignalType \
                   \"DI\" -Label \"System Enable Energy Saving\"\n";
     let unused = backup(signal, "MOC:CFG_1.0:6:0::\n");
@@ -257,7 +257,7 @@ fn backups_are_asked_for_settings_that_save() {
 
 /// Three plants and three near misses of each rule that needs a backup.
 #[test]
-fn backups_are_planted() {
+fn backup_rules_find_planted_faults_and_no_near_misses() {
     let motion = "MOC:CFG_1.0:6:0::\n";
     let timeout = "MOC:CFG_1.0:6:0::\n#\nMOTION_PLANNER:\n\n      -brake_on_timeout 10\n";
     let io = "EIO:CFG_1.0:6:1::\n";
@@ -271,7 +271,7 @@ fn backups_are_planted() {
         ("WaitDI diDone,1;", motion, false),
     ];
     for (body, motion, fires) in brakes {
-        let folder = backup_of(&program(body), io, motion);
+        let folder = backup_with_program(&program(body), io, motion);
         let found = codes(&["--select", "EW801"], folder.path());
         assert_eq!(found.contains(&"EW801".to_owned()), fires, "{body} {motion}");
     }
@@ -293,14 +293,14 @@ fn backups_are_planted() {
         (signal("diDoor", "Door closed"), "WaitTime 1;", false),
     ];
     for (io, body, fires) in signals {
-        let folder = backup_of(&program(body), &io, motion);
+        let folder = backup_with_program(&program(body), &io, motion);
         let found = codes(&["--select", "EW802"], folder.path());
         assert_eq!(found.contains(&"EW802".to_owned()), fires, "{body} {io}");
     }
 }
 
 #[test]
-fn manuals_are_shown() {
+fn rule_shows_the_manual() {
     let here = Path::new(".");
     let output = text(&joulepath(&["rule", "EW101"], here).stdout);
     assert!(output.starts_with("# EW101 unneeded-stop-point"), "{output}");
@@ -314,7 +314,7 @@ fn manuals_are_shown() {
 
 /// A folder of unrelated programs with an entry each is linted file by file.
 #[test]
-fn unrelated_programs_stand_alone() {
+fn unrelated_programs_are_linted_separately() {
     let output = joulepath(
         &[&["lint", "fixtures/lint", "--format", "json", "--quiet"], &ROBOT[..]].concat(),
         Path::new("."),
@@ -340,7 +340,7 @@ fn broken_programs_are_linted_too() {
 
 /// The pre-commit hook receives the changed files and also reads the rest of their program.
 #[test]
-fn the_hook_looks_at_whole_programs() {
+fn the_pre_commit_hook_reads_whole_programs() {
     let hook = fs::read_to_string(".pre-commit-hooks.yaml").unwrap();
     let field = |name: &str| hook.lines().find_map(|line| line.trim().strip_prefix(name)).unwrap();
     assert_eq!(field("pass_filenames:").trim(), "false");

@@ -108,7 +108,7 @@ fn emitted(layout: Layout) -> Vec<SourceFile> {
 }
 
 #[test]
-fn each_module_holds_what_it_can_and_all_run_as_one_program() {
+fn long_streams_are_split_into_modules_of_one_program() {
     let model = find("IRB1600-10/1.45").unwrap();
     for layout in [Layout::Plain, Layout::Array, Layout::Auto] {
         let files = emitted(layout);

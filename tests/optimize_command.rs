@@ -43,7 +43,7 @@ fn snapshots() -> insta::Settings {
 }
 
 #[test]
-fn pick_place_keeps_the_contract() {
+fn the_result_of_pick_place_agrees_with_the_contract() {
     let result = json(&["optimize", "fixtures/pick_place", "--format", "json"]);
     assert_eq!(result["verification"]["passed"], true);
     for limit in ["velocity", "acceleration", "torque", "tcp_speed"] {
@@ -84,7 +84,7 @@ fn pick_place_keeps_the_contract() {
 }
 
 #[test]
-fn what_was_written_simulates_as_promised() {
+fn the_written_program_simulates_as_predicted() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
     let out = out.to_str().unwrap();
@@ -116,7 +116,7 @@ fn output_is_the_same_bytes_each_time() {
 }
 
 #[test]
-fn paper_order_holds() {
+fn times_and_energies_are_ordered_as_in_the_paper() {
     let energy = json(&["optimize", "fixtures/paper", "--format", "json"]);
     let time = json(&["optimize", "fixtures/paper", "--format", "json", "--objective", "time"]);
     let segment = |result: &Value, line: u64, key: &str| -> f64 {
@@ -160,7 +160,7 @@ fn tree(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
 }
 
 #[test]
-fn in_place_is_taken_back_to_the_byte() {
+fn undo_restores_every_byte() {
     let folder = tempfile::tempdir().unwrap();
     let cell = folder.path().join("cell");
     fs::create_dir(&cell).unwrap();
@@ -194,7 +194,7 @@ fn in_place_is_taken_back_to_the_byte() {
 }
 
 #[test]
-fn what_was_changed_since_is_not_taken_back() {
+fn undo_is_refused_after_an_edit() {
     let folder = tempfile::tempdir().unwrap();
     let cell = folder.path().join("cell");
     fs::create_dir(&cell).unwrap();
@@ -230,7 +230,7 @@ fn what_was_changed_since_is_not_taken_back() {
 }
 
 #[test]
-fn folders_that_were_made_are_removed_again() {
+fn undo_removes_created_folders() {
     let folder = tempfile::tempdir().unwrap();
     let cell = folder.path().join("cell");
     fs::create_dir(&cell).unwrap();
@@ -349,7 +349,7 @@ fn optimized(statements: &str, options: &[&str]) -> Value {
 }
 
 #[test]
-fn the_time_asked_for_has_bounds() {
+fn requested_cycle_times_have_bounds() {
     let cases: [&[&str]; 6] = [
         &["--takt", "1e9"],
         &["--takt", "0.1"],
@@ -382,7 +382,7 @@ fn a_takt_above_the_cycle_is_possible() {
 
 /// `ModPos` changes the text of a movement with its target inside, which no guard detects.
 #[test]
-fn movements_with_the_target_in_them_stay() {
+fn movements_with_inline_targets_are_kept() {
     let own = "MoveAbsJ [[30,0,4,-20,65,30],[9E9,9E9,9E9,9E9,9E9,9E9]],v1000,fine,tP;";
     let named = "MoveAbsJ jB,v1000,fine,tP;";
     for (statement, args, stays) in
@@ -399,7 +399,7 @@ fn movements_with_the_target_in_them_stay() {
 
 /// Guards compare values: a name may be edited or receive another value.
 #[test]
-fn a_name_with_another_value_keeps_the_stream_out() {
+fn the_original_runs_where_a_name_has_another_value() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("m.mod");
     fs::write(&path, program("", "MoveAbsJ jA,v1000,fine,tP;")).unwrap();
@@ -450,7 +450,7 @@ fn streams_for_a_speed_override_take_no_longer() {
 
 /// In strings of RAPID, quotes and backslashes are doubled.
 #[test]
-fn arguments_in_messages_are_strings_of_rapid() {
+fn arguments_in_messages_are_escaped_for_rapid() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("m.mod");
     let function = "FUNC jointtarget fPlace(string sName\\num nUp)\nRETURN jB;\nENDFUNC\n";
@@ -466,7 +466,7 @@ fn arguments_in_messages_are_strings_of_rapid() {
 }
 
 #[test]
-fn what_a_message_tells_to_give_does() {
+fn the_value_that_an_error_message_proposes_is_accepted() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("m.mod");
     fs::write(&path, program("", "WaitTime 0.5;")).unwrap();
@@ -486,7 +486,7 @@ fn what_a_message_tells_to_give_does() {
 }
 
 #[test]
-fn slower_than_pays_has_a_note() {
+fn a_duration_that_needs_more_energy_causes_a_note() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("m.mod");
     // The extended arm needs more holding power than the final pose of the cycle.
@@ -550,7 +550,7 @@ fn a_longer_time_is_compared_with_a_padded_original() {
 /// With assumed limits a run may also use additional time. If the true limits are lower, it loses
 /// no more than the original: a known wait keeps a reserve.
 #[test]
-fn given_time_is_used_where_limits_are_assumed() {
+fn additional_time_is_used_where_limits_are_assumed() {
     let statements = "WaitTime 0.5;\nMoveAbsJ jB,v1000,fine,tP;\nWaitDI diGo,1;";
     let optimized = |options: &[&str]| {
         optimized(statements, &[&["--robot", "IRB1600-10/1.45"], options].concat())
@@ -588,7 +588,7 @@ fn text_of(args: &[&str]) -> String {
 }
 
 #[test]
-fn odd_statements_have_their_true_reason() {
+fn unusual_statements_have_their_true_reason() {
     let clash = "CONST num nX:=1;\nPROC rB()\nENDPROC\nPROC rB()\nENDPROC\nVAR num nX:=2;";
     let heavy = "PERS tooldata tH:=[TRUE,[[0,0,90],[1,0,0,0]],[1E30,[0,0,9],[1,0,0,0],0,0,0]];";
     let endless = "PROC rEndless()\nrEndless;\nENDPROC";
@@ -631,7 +631,7 @@ const FAR: &str = "CONST jointtarget jC:=[[-100,50,-30,0,0,0],[9E9,9E9,9E9,9E9,9
                    CONST jointtarget jD:=[[100,50,-30,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];";
 
 #[test]
-fn streams_without_indentation_and_over_long_ways_hold() {
+fn streams_work_without_indentation_and_over_long_distances() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("m.mod");
     let statements = "MoveAbsJ jC,vmax,fine,tP;\nMoveAbsJ jD,vmax,fine,tP;";
@@ -663,7 +663,7 @@ fn statements_may_stand_close_together() {
 }
 
 #[test]
-fn what_flies_on_into_the_next_pass_of_a_loop_stays() {
+fn a_fly_by_movement_into_the_next_loop_pass_is_kept() {
     // From the second pass on, the last and the first movement of the loop form one path.
     let flies = |zone: &str| {
         format!(
@@ -682,7 +682,7 @@ fn what_flies_on_into_the_next_pass_of_a_loop_stays() {
 }
 
 #[test]
-fn a_path_through_two_routines_costs_only_itself() {
+fn a_path_through_two_routines_does_not_prevent_other_streams() {
     let helper = "PROC rGo()\nMoveAbsJ jB,v500,fine,tP;\nMoveAbsJ jA,v500,z20,tP;\nENDPROC";
     let calls = "rGo;\nrGo;\nMoveAbsJ jA,v500,fine,tP;\nMoveAbsJ jB,v500,fine,tP;\n\
                  MoveAbsJ jA,v500,fine,tP;";
@@ -692,7 +692,7 @@ fn a_path_through_two_routines_costs_only_itself() {
 }
 
 #[test]
-fn the_program_itself_is_no_output_folder() {
+fn the_folder_of_the_program_is_refused_as_output() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("m.mod");
     let source = program("", "MoveAbsJ jB,v500,fine,tP;\nMoveAbsJ jA,v500,fine,tP;");
@@ -705,7 +705,7 @@ fn the_program_itself_is_no_output_folder() {
 }
 
 #[test]
-fn two_entries_are_one_too_many() {
+fn two_entry_routines_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     for name in ["a.mod", "b.mod"] {
         fs::write(folder.path().join(name), program("", "")).unwrap();
@@ -777,7 +777,7 @@ fn files_of_one_name_do_not_collide() {
 }
 
 #[test]
-fn text_diff_and_module_read_well() {
+fn text_diff_and_module_agree_with_the_snapshots() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
     let args = ["optimize", "fixtures/hard/encoding.mod", "--quiet"];
@@ -792,7 +792,7 @@ fn text_diff_and_module_read_well() {
 }
 
 #[test]
-fn json_has_the_contracts_fields() {
+fn json_has_the_fields_of_the_contract() {
     let args = ["optimize", "fixtures/hard/encoding.mod", "--quiet", "--format", "json"];
     snapshots().bind(|| insta::assert_snapshot!("json", text(&joulepath(&args).stdout)));
     let args = ["simulate", "fixtures/hard/encoding.mod", "--quiet", "--format", "json"];

@@ -70,7 +70,7 @@ proptest! {
     })]
 
     #[test]
-    fn agrees_with_the_other_solver(q in prop::array::uniform6(-3.0..3.0)) {
+    fn kinematics_agree_with_the_other_solver(q in prop::array::uniform6(-3.0..3.0)) {
         for model in &robots() {
             let other = oracle(model);
             let (ours, theirs) = (fk(model, &q), other.forward(&q));

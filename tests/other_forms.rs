@@ -80,7 +80,7 @@ fn speed(statement: &str) -> f64 {
 }
 
 #[test]
-fn only_speeds_change_and_no_ceiling_is_passed() {
+fn retiming_changes_only_speeds_and_raises_none() {
     let folder = tempfile::tempdir().unwrap();
     let result = run(folder.path(), &["--emit", "retime", "--input", "diPart=4"]);
     assert_eq!(result["verification"]["passed"], true, "{result}");
@@ -126,7 +126,7 @@ fn only_speeds_change_and_no_ceiling_is_passed() {
 }
 
 #[test]
-fn streams_save_more_than_speeds() {
+fn streams_save_more_than_retimed_speeds() {
     for input in [&[][..], &["--input", "diPart=4"]] {
         let folder = tempfile::tempdir().unwrap();
         let speeds = run(folder.path(), &[&["--emit", "retime"], input].concat());
@@ -142,7 +142,7 @@ fn streams_save_more_than_speeds() {
 }
 
 #[test]
-fn positions_for_a_guide_stand_beside_an_unchanged_program() {
+fn egm_writes_positions_beside_an_unchanged_program() {
     let folder = tempfile::tempdir().unwrap();
     let streams = run(folder.path(), &[]);
     let folder = tempfile::tempdir().unwrap();
@@ -205,7 +205,7 @@ fn positions_for_a_guide_stand_beside_an_unchanged_program() {
 
 /// The module is next to the program, which does not see the module's local data.
 #[test]
-fn a_tool_of_its_module_alone_has_no_equivalent_for_a_guide() {
+fn egm_refuses_a_tool_that_is_local_to_its_module() {
     let folder = tempfile::tempdir().unwrap();
     let text = program().replace("PERS tooldata", "LOCAL PERS tooldata");
     let result = run_text(folder.path(), &text, &["--emit", "egm"]);
@@ -219,7 +219,7 @@ fn a_tool_of_its_module_alone_has_no_equivalent_for_a_guide() {
 
 /// If the operator reduces a speed, a retimed program becomes slower, too.
 #[test]
-fn retimed_speeds_follow_the_data_that_they_come_from() {
+fn retimed_speeds_follow_their_speed_data() {
     let folder = tempfile::tempdir().unwrap();
     let data = "VAR speeddata vWay:=[800,500,5000,1000];\n\
                 CONST speeddata vAll{2}:=[[300,200,5000,1000],[600,300,5000,1000]];\n\

@@ -52,7 +52,7 @@ fn json_has_the_fields_of_the_contract() {
 }
 
 #[test]
-fn exit_codes_tell_errors_from_unusable_input() {
+fn exit_codes_distinguish_errors_from_unusable_input() {
     let folder = folder(&[("good.mod", GOOD), ("bad.mod", BAD), ("notes/read.me", b"")]);
     let path = |name: &str| shown(&folder.path().join(name)).to_owned();
     let code = |arguments: &[&str]| parse(arguments).status.code();
@@ -94,14 +94,14 @@ fn movements_are_those_at_the_start_of_statements() {
     for file in value["files"].as_array().unwrap() {
         let path = file["path"].as_str().unwrap();
         let bytes = std::fs::read(path).unwrap();
-        let expected = at_statement_starts(&bytes);
+        let expected = movements_at_statement_starts(&bytes);
         assert_eq!(file["movements"], expected, "{path}");
         counted += expected;
     }
     assert!(counted > 20, "only {counted} movements in all fixtures");
 }
 
-fn at_statement_starts(bytes: &[u8]) -> usize {
+fn movements_at_statement_starts(bytes: &[u8]) -> usize {
     let parse = syntax::parse(bytes);
     let mut count = 0;
     let mut before = TokenKind::Semicolon;

@@ -37,7 +37,7 @@ fn simulated(model: &Model) -> (Simulation, Account) {
 }
 
 #[test]
-fn sums_over_a_motion_tell_the_energy_of_each_robot() {
+fn sums_over_a_motion_give_the_energy_of_each_robot() {
     let model = find("IRB1600-10/1.45").unwrap();
     let (simulation, own) = simulated(&model);
     let sums = moments(&model, &simulation);
@@ -81,7 +81,7 @@ fn moments_of(model: &Model) -> [f64; 3] {
 /// Arms with unknown name and bodies and with the mass and payload of known robots: the rule by
 /// axes compared with meshes. A tenth may exceed [`FAR`].
 #[test]
-fn an_arm_of_axes_alone_is_near_its_meshes() {
+fn estimates_from_axes_are_close_to_estimates_from_meshes() {
     let tables: toml::Table =
         toml::from_str(include_str!("../src/arm/robot/prior/robots.toml")).unwrap();
     let mut far = Vec::new();
@@ -118,7 +118,7 @@ fn an_arm_of_axes_alone_is_near_its_meshes() {
 }
 
 #[test]
-fn an_arm_without_dynamics_gets_them() {
+fn an_arm_without_dynamics_gets_estimated_ones() {
     for name in joulepath::arm::robot::names().filter(|name| !name.starts_with("IRB14000")) {
         let bare = find(name).unwrap();
         let model = applied(estimated(bare.clone())).unwrap();
@@ -141,7 +141,7 @@ fn an_arm_without_dynamics_gets_them() {
 const MEAN_OFF: f64 = 0.01;
 
 #[test]
-fn the_mean_robot_takes_the_mean_of_the_energies() {
+fn the_mean_robot_needs_the_mean_energy() {
     let model = with_estimates(find("IRB2600-20/1.65").unwrap()).unwrap();
     let (simulation, _) = simulated(&model);
     let robots = Robots::new(&model).unwrap();
@@ -158,7 +158,7 @@ fn the_mean_robot_takes_the_mean_of_the_energies() {
 }
 
 #[test]
-fn a_balancer_helps_to_hold() {
+fn a_balancer_reduces_the_holding_power() {
     let model = with_estimates(find("IRB6700-200/2.6").unwrap()).unwrap();
     let without = Model { laws: Vec::new(), ..model.clone() };
     let forwards = [0.0, 1.0, 0.0, 0.0, 0.5, 0.0];
@@ -171,7 +171,7 @@ fn a_balancer_helps_to_hold() {
 }
 
 #[test]
-fn a_robot_of_another_name_has_the_spread_of_its_type() {
+fn a_renamed_robot_has_the_spread_of_its_type() {
     let known = with_estimates(find("IRB2600-20/1.65").unwrap()).unwrap();
     let text = "extends = \"IRB2600-20/1.65\"\nname = \"line 4\"\n";
     let renamed = with_estimates(from_toml("cell.toml", text).unwrap()).unwrap();
@@ -184,7 +184,7 @@ fn a_robot_of_another_name_has_the_spread_of_its_type() {
 }
 
 #[test]
-fn what_a_table_leaves_out_is_estimated() {
+fn missing_values_of_a_table_are_estimated() {
     let whole = with_estimates(find("IRB2600-20/1.65").unwrap()).unwrap();
     let with = |lines: &str| {
         let text = format!("extends = \"IRB2600-20/1.65\"\n{lines}");
@@ -201,7 +201,7 @@ fn what_a_table_leaves_out_is_estimated() {
 }
 
 #[test]
-fn deviations_that_a_file_states_are_used_and_absurd_ones_refused() {
+fn stated_standard_deviations_are_used_and_absurd_ones_refused() {
     let with = |lines: &str| {
         let text = format!("extends = \"IRB2600-20/1.65\"\n[drive]\nbase_w = 250\n{lines}");
         with_estimates(from_toml("cell.toml", &text).unwrap())
@@ -218,7 +218,7 @@ fn deviations_that_a_file_states_are_used_and_absurd_ones_refused() {
 }
 
 #[test]
-fn masses_that_no_arm_has_are_refused_by_name() {
+fn impossible_masses_are_refused_by_name() {
     let bare = find("IRB2600-20/1.65").unwrap();
     let text = to_toml(&Model { name: "an arm".into(), ..bare });
     let with_mass = |mass: &str| {

@@ -263,7 +263,7 @@ fn power(model: &Model, tau: &[f64], rigid: &[f64], friction: &[f64], qd: &[f64;
 }
 
 /// Without corner zones the robot stops at every point, with straight joint lines between.
-fn judge_polygon(stream: &Stream, way: &Way, original: &[Vector]) {
+fn check_polygon(stream: &Stream, way: &Way, original: &[Vector]) {
     const STEPS: usize = 40;
     let stops = [stream.start, *stream.points.last().unwrap()].map(|q| flange(&q).0);
     let from = std::iter::once(&stream.start).chain(&stream.points);
@@ -285,7 +285,7 @@ fn judge_polygon(stream: &Stream, way: &Way, original: &[Vector]) {
 }
 
 /// Checks a stream against the limits, its path and its predicted values.
-fn judge(model: &Model, stream: &Stream, segment: &Value, (way, ceiling): &(Way, f64)) {
+fn check_stream(model: &Model, stream: &Stream, segment: &Value, (way, ceiling): &(Way, f64)) {
     let name = format!("line {}", stream.line);
     let samples = play(stream);
     let limits = &model.limits;
@@ -328,7 +328,7 @@ fn judge(model: &Model, stream: &Stream, segment: &Value, (way, ceiling): &(Way,
         }
         before = Some((*t, watts, place));
     }
-    judge_polygon(stream, way, &original);
+    check_polygon(stream, way, &original);
     let (_, reached, ..) = samples[samples.len() - 1];
     match way {
         Way::Joints(to) => {
@@ -375,7 +375,7 @@ fn optimize(folder: &Path, options: &[&str]) -> (Value, String) {
 }
 
 #[test]
-fn emitted_points_hold_what_was_promised_of_them() {
+fn emitted_streams_keep_limits_paths_and_predicted_energies() {
     let model = find(ROBOT).unwrap();
     let ways = ways();
     for options in [
@@ -404,9 +404,9 @@ fn emitted_points_hold_what_was_promised_of_them() {
                 let time = segment["time_after_s"].as_f64().unwrap();
                 assert!(time <= segment["time_before_s"].as_f64().unwrap() + TIME);
                 let end = stream.points.last().unwrap();
-                judge_polygon(stream, &ways[&stream.line].0, &joint_path(&stream.start, end));
+                check_polygon(stream, &ways[&stream.line].0, &joint_path(&stream.start, end));
             } else {
-                judge(&model, stream, segment, &ways[&stream.line]);
+                check_stream(&model, stream, segment, &ways[&stream.line]);
             }
             stands = stream.points.last().copied();
         }
@@ -414,7 +414,7 @@ fn emitted_points_hold_what_was_promised_of_them() {
 }
 
 #[test]
-fn layouts_are_the_same_motion() {
+fn both_layouts_give_the_same_motion() {
     let folder = tempfile::tempdir().unwrap();
     let (_, plain) = optimize(folder.path(), &["--layout", "plain"]);
     let (_, array) = optimize(folder.path(), &["--layout", "array"]);

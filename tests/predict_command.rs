@@ -65,7 +65,7 @@ fn state(t: f64) -> Vec<f64> {
 }
 
 #[test]
-fn simulated_motion_is_predicted() {
+fn predictions_agree_with_the_simulation() {
     let folder = tempfile::tempdir().unwrap();
     let program = "MODULE M\nPROC main()\n\
         MoveAbsJ [[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v1000,fine,tool0;\n\
@@ -93,7 +93,7 @@ fn simulated_motion_is_predicted() {
 }
 
 #[test]
-fn seven_joints_in_any_form_of_csv() {
+fn logs_of_seven_joints_may_have_any_form_of_csv() {
     let folder = tempfile::tempdir().unwrap();
     let model = from_toml(SEVEN, &fs::read_to_string(SEVEN).unwrap()).unwrap();
     let degrees = |x: f64| format!("{}", x.to_degrees());
@@ -139,7 +139,7 @@ fn seven_joints_in_any_form_of_csv() {
 
 /// Rates and accelerations are computed from positions with other names and in degrees.
 #[test]
-fn positions_are_enough() {
+fn positions_alone_are_sufficient() {
     let folder = tempfile::tempdir().unwrap();
     let model = from_toml(SEVEN, &fs::read_to_string(SEVEN).unwrap()).unwrap();
     let swing = |joint: usize, t: f64| {
@@ -181,7 +181,7 @@ fn positions_are_enough() {
 
 /// Diagnosed sensor effects apply to a log's torques; powers do not contain them.
 #[test]
-fn predictions_are_those_of_the_log() {
+fn predicted_torques_contain_sensor_effects() {
     let folder = tempfile::tempdir().unwrap();
     let motion = written(&folder, "motion.csv", &log_of_seven(",", "", |x| x.to_string()));
     let seven = fs::canonicalize(SEVEN).unwrap();
@@ -306,7 +306,7 @@ fn unusable_logs_are_refused_with_the_way_out() {
 }
 
 #[test]
-fn an_estimated_robot_predicts_and_says_so() {
+fn predictions_of_an_estimated_robot_have_a_note() {
     let folder = tempfile::tempdir().unwrap();
     let rows = (0..200).map(|i| {
         let t = 0.01 * f64::from(i);

@@ -29,7 +29,7 @@ fn statements(parse: &Parse) -> usize {
 }
 
 #[test]
-fn a_token_too_few_or_too_many_is_one_error() {
+fn a_missing_or_surplus_token_causes_one_error() {
     let mut mutations = 0;
     let mut wrong = Vec::new();
     for (path, source) in programs() {

@@ -62,7 +62,7 @@ fn edit(path: &Path, from: &str, to: &str) {
 }
 
 #[test]
-fn nothing_changed_is_no_difference() {
+fn refreshing_an_unchanged_program_changes_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let cell = cell(folder.path(), "cell", "", "");
     done(&["optimize", "--in-place"], &cell);
@@ -76,7 +76,7 @@ fn nothing_changed_is_no_difference() {
 }
 
 #[test]
-fn a_position_that_was_taught_anew_has_streams_again() {
+fn a_changed_position_gets_new_streams() {
     let folder = tempfile::tempdir().unwrap();
     let (from, to) = ("[850,300,800]", "[850,300,812.5]");
     let changed = cell(folder.path(), "changed", from, to);
@@ -104,7 +104,7 @@ fn a_position_that_was_taught_anew_has_streams_again() {
 }
 
 #[test]
-fn a_movement_that_was_edited_and_a_stated_serial_number_stay() {
+fn refresh_keeps_edited_movements_and_a_stated_serial_number() {
     let folder = tempfile::tempdir().unwrap();
     let cell = cell(folder.path(), "cell", "", "");
     done(&["optimize", "--in-place"], &cell);
@@ -120,7 +120,7 @@ fn a_movement_that_was_edited_and_a_stated_serial_number_stay() {
 }
 
 #[test]
-fn streams_that_no_longer_pay_are_taken_out() {
+fn streams_whose_data_may_change_are_removed() {
     let folder = tempfile::tempdir().unwrap();
     let cell = cell(folder.path(), "cell", "", "");
     done(&["optimize", "--in-place"], &cell);
@@ -139,7 +139,7 @@ fn streams_that_no_longer_pay_are_taken_out() {
 }
 
 #[test]
-fn what_has_no_streams_is_refused() {
+fn a_program_without_streams_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let cell = cell(folder.path(), "cell", "", "");
     let before = files(&cell);

@@ -337,7 +337,7 @@ fn pages_are_well_formed() {
 }
 
 #[test]
-fn pages_load_nothing() {
+fn pages_load_no_external_content() {
     for foreign in ["http://", "https://", "src=", "@import", "<script", "<link", "url("] {
         assert!(!CELL.page.contains(foreign), "{foreign}");
     }
@@ -351,7 +351,7 @@ fn the_same_input_gives_the_same_bytes() {
 }
 
 #[test]
-fn foreign_text_stays_text() {
+fn foreign_text_is_escaped() {
     let mut small = small("<img onerror=\"x\">/Cell's & <b>.mod");
     small.model.name = "IRB <script>".into();
     small.retrofit.segments[0].reason = Some(Reason::Instruction("<i>\"&'".into()));
@@ -384,7 +384,7 @@ fn cells(page: &str, label: &str) -> Vec<f64> {
 }
 
 #[test]
-fn segments_and_the_rest_tile_the_cycle() {
+fn segments_and_the_rest_add_up_to_the_cycle() {
     const ROUNDING: [f64; 4] = [0.0005, 0.0005, 0.05, 0.05];
     let listed: BTreeSet<usize> =
         CELL.retrofit.segments.iter().flat_map(|segment| segment.events.iter().copied()).collect();
@@ -417,7 +417,7 @@ fn segments_and_the_rest_tile_the_cycle() {
 }
 
 #[test]
-fn the_lines_of_the_source_carry_the_whole_energy() {
+fn energies_of_the_source_add_up_to_the_total() {
     let source = CELL.page.split("<section id=\"source\">").nth(1).unwrap();
     let source = source.split("</section>").next().unwrap();
     let mut sums = [0.0; 2];
@@ -480,7 +480,7 @@ fn each_rewritten_segment_has_its_arrow() {
 }
 
 #[test]
-fn the_dwells_add_up_to_the_potential() {
+fn savings_of_the_dwells_add_up_to_the_potential() {
     let table = CELL.page.split("<section id=\"dwells\">").nth(1).unwrap();
     let table = table.split("</section>").next().unwrap();
     let potentials: Vec<f64> = table

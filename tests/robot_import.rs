@@ -99,7 +99,7 @@ fn the_chain_of_a_urdf_ends_at_its_flange() {
 }
 
 #[test]
-fn what_is_fixed_to_a_link_weighs_on_it() {
+fn a_fixed_part_adds_to_the_mass_of_its_link() {
     let model = model(&arm());
     let fore = &model.links[1];
     assert_eq!(fore.mass, 4.0);
@@ -118,7 +118,7 @@ fn a_urdf_without_inertias_has_kinematics_only() {
 }
 
 #[test]
-fn seven_joints_are_modelled() {
+fn a_urdf_may_have_seven_joints() {
     let names: Vec<String> = (0..8).map(|i| format!("l{i}")).collect();
     let mut urdf = String::from("<robot name=\"seven\">\n");
     urdf.extend(names.iter().map(|name| link(name)));
@@ -132,7 +132,7 @@ fn seven_joints_are_modelled() {
 
 /// A URDF of an ABB arm has the closed inverse and the same configurations.
 #[test]
-fn an_arm_given_joint_by_joint_is_recognised() {
+fn a_urdf_of_an_abb_arm_has_closed_inverse_kinematics() {
     let known = find("IRB1600-10/1.45").unwrap();
     let [a1, c1, c2, c3, c4] = {
         let opw = known.kinematics.opw.as_ref().unwrap();
@@ -274,7 +274,7 @@ fn a_motion_configuration_is_an_overlay_of_its_robot() {
 }
 
 #[test]
-fn rods_bound_the_angle_between_the_arms() {
+fn rods_limit_the_angle_between_the_arms() {
     let text = configuration()
         .replace("ROB1_1600_1.45_10", "ROB1_4400L_2.43_30")
         .replace("1.13446", "1.13446 -upper_joint_coupl_bound 0.9 -lower_joint_coupl_bound -0.8");
@@ -326,7 +326,7 @@ fn wrong_configurations_name_the_place_and_the_way_out() {
 
 /// Every message has the line of the file, the key, and the permitted values.
 #[test]
-fn figures_of_a_configuration_are_refused_where_they_stand() {
+fn wrong_values_of_a_configuration_are_refused_with_their_line() {
     let whole = configuration();
     let cut = |end: &str| whole[..whole.find(end).unwrap() + end.len()].to_owned();
     let load = "-mass 4.5";
@@ -372,7 +372,7 @@ fn figures_of_a_configuration_are_refused_where_they_stand() {
 }
 
 #[test]
-fn a_load_hangs_once_where_its_arm_refers_to_it() {
+fn a_load_is_added_once_to_the_arm_that_names_it() {
     let plain = find("IRB1600-10/1.45").unwrap();
     let added = |text: &str| -> Vec<f64> {
         let toml = import_moc("MOC.cfg", text, None).unwrap();
@@ -388,7 +388,7 @@ fn a_load_hangs_once_where_its_arm_refers_to_it() {
 
 /// The check detects wrong units that no bound of a single value reveals.
 #[test]
-fn the_check_doubts_figures_in_other_units() {
+fn the_check_reports_values_in_other_units() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("robot.toml").display().to_string();
     let link =
@@ -411,7 +411,7 @@ fn the_check_doubts_figures_in_other_units() {
 }
 
 #[test]
-fn what_a_file_lacks_is_added_by_extending_the_file() {
+fn missing_data_are_added_by_extending_the_file() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("arm.urdf").display().to_string();
     fs::write(&path, arm().replace(INERTIAL, "")).unwrap();
@@ -425,7 +425,7 @@ fn what_a_file_lacks_is_added_by_extending_the_file() {
 }
 
 #[test]
-fn ranges_are_shown_as_they_are() {
+fn show_prints_exact_position_ranges() {
     let shown = stdout(&robots(&["show", "IRB14000 right"]));
     assert!(shown.contains("-143.5…43.5 ") && shown.contains("-123.5…80 "), "{shown}");
 }
@@ -464,7 +464,7 @@ fn every_known_robot_passes_the_check() {
 }
 
 #[test]
-fn each_figure_is_shown_with_how_well_it_is_known() {
+fn show_prints_each_value_with_its_interval() {
     let output = robots(&["show", "IRB2600-20/1.65", "--format", "json"]);
     let found: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
     let figures = found["figures"].as_array().unwrap();
@@ -500,7 +500,7 @@ fn imported_robots_can_be_used_and_extended() {
 }
 
 #[test]
-fn wrong_files_end_with_2_and_one_message() {
+fn wrong_files_give_exit_code_2_and_one_message() {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| {
         let path = folder.path().join(name);

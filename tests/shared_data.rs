@@ -77,7 +77,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 }
 
 #[test]
-fn logged_joints_of_an_irb6640() {
+fn logged_joints_of_an_irb6640_agree_with_the_kinematics() {
     let Some(text) = shared("pairs/irb6640_180_255_controller_fine.csv") else { return };
     let model = find("IRB6640-180/2.55").unwrap();
     // The tool of all logged programs.
@@ -109,7 +109,7 @@ fn logged_joints_of_an_irb6640() {
 }
 
 #[test]
-fn robotstudio_targets_of_an_irb1600() {
+fn robotstudio_targets_of_an_irb1600_are_reached() {
     let Some(text) = shared("pairs/irb1600_145_robotstudio_targets.json") else { return };
     let model = find("IRB1600-10/1.45").unwrap();
     let document: serde_json::Value = serde_json::from_str(&text).unwrap();
@@ -134,7 +134,7 @@ fn robotstudio_targets_of_an_irb1600() {
 }
 
 #[test]
-fn single_pairs_of_targets_and_joints() {
+fn single_pairs_of_targets_and_joints_agree_with_the_kinematics() {
     let Some(text) = shared("pairs/single_pairs.json") else { return };
     let document: serde_json::Value = serde_json::from_str(&text).unwrap();
     let numbers = |value: &serde_json::Value| -> Vec<f64> {

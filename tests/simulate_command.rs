@@ -24,7 +24,7 @@ fn json(args: &[&str]) -> Value {
 }
 
 #[test]
-fn the_report_is_one_page_with_everything_in_it() {
+fn the_report_is_one_self_contained_page() {
     let folder = tempfile::tempdir().unwrap();
     let page = folder.path().join("cycle.html");
     let path = page.to_str().unwrap();
@@ -72,7 +72,7 @@ fn wrong_options_name_the_way_out() {
 }
 
 #[test]
-fn levels_and_passes_change_what_runs() {
+fn levels_and_passes_change_the_simulated_cycle() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("m.mod");
     let none = "[9E9,9E9,9E9,9E9,9E9,9E9]";
@@ -102,7 +102,7 @@ fn levels_and_passes_change_what_runs() {
 }
 
 #[test]
-fn movements_that_do_more_are_marked_and_waits_have_their_joules() {
+fn movements_with_actions_are_marked_and_energies_add_up() {
     let [robot, name] = ROBOT;
     let result = json(&["simulate", "fixtures/hard/trigger.mod", robot, name, "--format", "json"]);
     let marks: Vec<(&str, &Value)> = result["moves"]

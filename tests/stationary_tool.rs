@@ -39,7 +39,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..Default::default() })]
 
     #[test]
-    fn either_side_sees_the_other(q in prop::array::uniform6(-2.5..2.5)) {
+    fn pose_and_flange_are_inverse_for_held_and_stationary_tools(q in prop::array::uniform6(-2.5..2.5)) {
         let flange = fk(&robots()[0], &q);
         for tcp in [Tcp::Held(stationary()), Tcp::Stationary(stationary())] {
             let [linear, angular] = difference(&tcp.flange(&tcp.pose(&flange)), &flange);
@@ -52,7 +52,7 @@ proptest! {
     }
 
     #[test]
-    fn jacobian_is_the_change_of_pose(
+    fn jacobian_is_the_derivative_of_the_pose(
         q in prop::array::uniform6(-2.5..2.5),
         qd in prop::array::uniform6(-3.0..3.0),
         which in 0usize..2,
@@ -93,7 +93,7 @@ const GLUE: &str = "MODULE M\n\
     ENDPROC\nENDMODULE\n";
 
 #[test]
-fn the_work_moves_along_the_line() {
+fn the_workpiece_moves_along_the_line() {
     let folder = tempfile::tempdir().unwrap();
     let (program, motion) = (folder.path().join("m.mod"), folder.path().join("motion.csv"));
     fs::write(&program, GLUE).unwrap();
@@ -139,7 +139,7 @@ fn the_work_moves_along_the_line() {
 }
 
 #[test]
-fn what_both_or_neither_hold_is_refused() {
+fn a_robot_that_holds_neither_tool_nor_work_object_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     let program = folder.path().join("m.mod");
     fs::write(&program, GLUE.replace("[TRUE,TRUE", "[FALSE,TRUE")).unwrap();

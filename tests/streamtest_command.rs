@@ -123,7 +123,7 @@ fn b_spline(start: [f64; 6], points: &[Timed]) -> impl Fn(f64) -> [f64; 6] + use
 }
 
 /// The robot stops at each point: corner zones have no effect.
-fn visiting(start: [f64; 6], points: &[Timed]) -> impl Fn(f64) -> [f64; 6] + use<> {
+fn with_stops(start: [f64; 6], points: &[Timed]) -> impl Fn(f64) -> [f64; 6] + use<> {
     let points = points.to_vec();
     move |t: f64| {
         let (mut from, mut t) = (start, t.max(0.0));
@@ -163,7 +163,7 @@ fn findings(found: &Value) -> Vec<&str> {
 }
 
 #[test]
-fn the_modules_are_rapid_and_run() {
+fn the_modules_are_valid_rapid_and_run() {
     let folder = written();
     for name in ["JoulepathTest.mod", "JoulepathTestLogger.mod"] {
         let parse = syntax::parse(&fs::read(folder.path().join(name)).unwrap());
@@ -183,7 +183,7 @@ fn the_modules_are_rapid_and_run() {
 }
 
 #[test]
-fn the_predicted_log_and_a_robot_with_lag_and_noise_are_as_expected() {
+fn the_predicted_log_and_one_with_lag_and_noise_pass() {
     let folder = written();
     let own = fs::read_to_string(folder.path().join("streamtest.csv")).unwrap();
     assert_eq!(judged(&folder, &own).1, Some(0));
@@ -201,12 +201,12 @@ fn the_predicted_log_and_a_robot_with_lag_and_noise_are_as_expected() {
 }
 
 #[test]
-fn a_controller_that_visits_the_points_is_told() {
+fn a_controller_that_visits_the_points_is_recognised() {
     let folder = written();
     let motions: Vec<_> = points(&folder)
         .iter()
         .map(|points| {
-            let motion: Motion = Box::new(visiting(START, points));
+            let motion: Motion = Box::new(with_stops(START, points));
             (motion, duration(points))
         })
         .collect();
@@ -218,13 +218,13 @@ fn a_controller_that_visits_the_points_is_told() {
 }
 
 #[test]
-fn a_controller_that_is_slower_or_cuts_corners_otherwise_is_not_as_expected() {
+fn a_slower_or_wider_motion_is_not_as_expected() {
     let folder = written();
     for (slower, wider) in [(1.05, 1.0), (1.0, 1.4)] {
         let motions: Vec<_> = points(&folder)
             .iter()
             .map(|points| {
-                let (law, visits) = (b_spline(START, points), visiting(START, points));
+                let (law, visits) = (b_spline(START, points), with_stops(START, points));
                 let motion: Motion = Box::new(move |t| {
                     let (a, b) = (law(t / slower), visits(t / slower));
                     std::array::from_fn(|j| b[j] + wider * (a[j] - b[j]))

@@ -226,7 +226,7 @@ fn hard_programs_keep_every_byte_and_every_refused_movement() {
 
 /// The check detects changed bytes.
 #[test]
-fn changed_bytes_are_found() {
+fn the_check_detects_changed_bytes() {
     let original = b"! a\n  MoveJ p,v,fine,t;\n! b\n";
     let start = find_bytes(original, b"MoveJ").unwrap();
     let span = start..start + "MoveJ p,v,fine,t;".len();

@@ -60,7 +60,7 @@ fn times(result: &Value, line: u64) -> [f64; 2] {
 }
 
 #[test]
-fn a_wait_of_known_length_is_used_up() {
+fn a_run_uses_a_wait_of_known_length() {
     let text = program("MoveL pD,v500,fine,tool0;");
     let unknown = optimize(&text, &[]);
     let known = optimize(&text, &["--input", "diPart=3"]);
@@ -74,14 +74,14 @@ fn a_wait_of_known_length_is_used_up() {
 
 /// After a change of the cell a slow stream may run while a quick one does not.
 #[test]
-fn no_run_takes_longer_so_that_another_one_may_be_quicker() {
+fn no_run_is_slowed_to_make_another_one_faster() {
     let result = optimize(&program("MoveL pD,v500,fine,tool0;"), &[]);
     let changes = [8, 10, 11, 12].map(|line| times(&result, line)).map(|[a, b]| b / a - 1.0);
     assert!(changes.iter().all(|change| *change < 1e-6), "{changes:?}");
 }
 
 #[test]
-fn what_is_free_leaves_its_path_and_is_never_worse() {
+fn a_free_path_deviates_and_needs_less_energy() {
     let line = "MoveL pD,v500,fine,tool0; ! joulepath: free";
     let text = program(line);
     let kept = optimize(&text, &[]);

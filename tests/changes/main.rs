@@ -132,7 +132,7 @@ fn case((name, texts): (String, Vec<String>), model: &Model, way: Way) -> Option
     if streams == 0 {
         return None;
     }
-    is_taken_out(&name, &original, &result);
+    assert_streams_can_be_removed(&name, &original, &result);
     let emitted: Vec<String> = result
         .outputs
         .iter()
@@ -147,7 +147,7 @@ fn case((name, texts): (String, Vec<String>), model: &Model, way: Way) -> Option
 }
 
 /// Removing the streams from a retrofit restores the original bytes.
-fn is_taken_out(name: &str, original: &[String], result: &Retrofit) {
+fn assert_streams_can_be_removed(name: &str, original: &[String], result: &Retrofit) {
     let prefix = result.outputs.iter().find_map(|output| prefix(&output.bytes)).unwrap();
     for output in result.outputs.iter().filter(|output| output.kind != OutputKind::New) {
         let file = SourceFile::new(FileId(0), output.path.clone(), output.bytes.clone());
@@ -233,7 +233,7 @@ fn original_and_retrofit_agree_under_every_change() {
 
 /// Settings that are inserted later must not affect a stream that was computed without them.
 #[test]
-fn settings_that_are_added_later_stop_streams() {
+fn settings_added_later_prevent_streams() {
     let model = find("IRB1600-10/1.45").unwrap();
     let (name, texts) = programs().into_iter().find(|(name, _)| name == MIXED).unwrap();
     let case = case((name, texts), &model, WAYS[2]).unwrap();

@@ -27,9 +27,9 @@ const WITHIN: f64 = 4.0;
 const SAME_TORQUES: f64 = 1e-2;
 /// Interval of the rows \[s\], and relative tolerance of a force.
 const ROW: f64 = 0.01;
-const OF_FORCE: f64 = 0.05;
+const FORCE_TOLERANCE: f64 = 0.05;
 /// Tolerance of a coupling.
-const OF_COUPLING: f64 = 0.005;
+const COUPLING_TOLERANCE: f64 = 0.005;
 /// Least reduction of the gap by an effect that is found.
 const SHRINKS: f64 = 0.5;
 
@@ -41,10 +41,10 @@ fn diagnosed(nominal: &Model, robot: &Robot<'_>) -> Diagnosis {
 }
 
 fn diagnosed_by(nominal: &Model, robot: &Robot<'_>, effects: Vec<&'static Effect>) -> Diagnosis {
-    trusting(nominal, robot, &Settings { trust: Trust::Commissioned, effects })
+    diagnosed_with(nominal, robot, &Settings { trust: Trust::Commissioned, effects })
 }
 
-fn trusting(nominal: &Model, robot: &Robot<'_>, settings: &Settings) -> Diagnosis {
+fn diagnosed_with(nominal: &Model, robot: &Robot<'_>, settings: &Settings) -> Diagnosis {
     let samples = [1, 2, 3].map(|seed| robot.samples(seed));
     let records = |which: &[usize]| -> Vec<Record<'_>> {
         which.iter().flat_map(|k| Record::all(nominal, &samples[*k])).collect()
@@ -71,7 +71,7 @@ fn healthy_robots_have_no_effect() {
 
 /// Effects that the baseline already contains are no changes; new effects are.
 #[test]
-fn of_a_baseline_only_changes_are_told() {
+fn only_changes_against_the_baseline_are_reported() {
     let nominal = irb1600();
     let truth = spread(&nominal, 3);
     let [load, friction] = ["payload", "stribeck"].map(|id| effect(id).unwrap());
@@ -177,7 +177,7 @@ fn shares_of_the_gap_add_up() {
 }
 
 #[test]
-fn flipped_currents_are_told() {
+fn a_flipped_current_sign_is_found() {
     let nominal = irb1600();
     let truth = spread(&nominal, 4);
     let sign = effect("current_sign").unwrap();
@@ -189,7 +189,7 @@ fn flipped_currents_are_told() {
 
 /// The windows are off the coarse grid, whose best window leads to another optimum.
 #[test]
-fn contacts_are_found_with_their_windows() {
+fn contacts_are_found_with_force_and_time_window() {
     let nominal = irb1600();
     let truth = spread(&nominal, 5);
     let contact = effect("contact").unwrap();
@@ -202,7 +202,11 @@ fn contacts_are_found_with_their_windows() {
             found.effects[0].parameters.iter().find(|of| of.name == name).unwrap().value
         };
         let force = (30.0_f64.powi(2) + 40.0_f64.powi(2) + 12.0_f64.powi(2)).sqrt();
-        assert!((value("force") / force - 1.0).abs() < OF_FORCE, "{rise} {}", value("force"));
+        assert!(
+            (value("force") / force - 1.0).abs() < FORCE_TOLERANCE,
+            "{rise} {}",
+            value("force")
+        );
         for (name, expected) in [("t_start_s", 2.636), ("t_end_s", 3.792)] {
             assert!((value(name) - expected).abs() < ROW, "{rise} {name} {}", value(name));
         }
@@ -211,7 +215,7 @@ fn contacts_are_found_with_their_windows() {
 
 /// Backlash depends on the actual load, not on that of a model with wrong masses.
 #[test]
-fn backlash_is_told_of_models_that_are_far_off() {
+fn backlash_is_found_despite_wrong_masses() {
     let nominal = irb1600();
     let mut truth = spread(&nominal, 5);
     for (link, factor) in truth.links.iter_mut().zip([1.0, 1.4, 0.6, 1.5, 0.5, 1.5]) {
@@ -220,25 +224,25 @@ fn backlash_is_told_of_models_that_are_far_off() {
     let effects = [(effect("backlash").unwrap(), 2, [0.005, 0.0, 1e5].as_slice())];
     let robot = Robot { model: &truth, effects: &effects, noise: 0.003 };
     let settings = Settings { trust: Trust::Cad, effects: ALL.iter().collect() };
-    let found = trusting(&nominal, &robot, &settings);
+    let found = diagnosed_with(&nominal, &robot, &settings);
     assert_eq!(named(&found), [("backlash", vec![3])], "{:?}", found.reasons);
 }
 
 /// At reversals of motor 6 the rows are so accurate that only the right coupling explains them.
 #[test]
-fn couplings_of_wrists_are_found_to_the_row() {
+fn a_wrist_coupling_is_found_accurately() {
     let nominal = irb1600();
     let truth = spread(&nominal, 5);
     let effects = [(effect("wrist_coupling").unwrap(), 5, [-0.254, 0.0, 0.0, 0.0].as_slice())];
     let found = diagnosed(&nominal, &Robot { model: &truth, effects: &effects, noise: 5e-4 });
     assert_eq!(named(&found), [("wrist_coupling", vec![5, 6])], "{:?}", found.reasons);
     let coupling = found.effects[0].parameters[0].value;
-    assert!((coupling + 0.254).abs() < OF_COUPLING, "{coupling}");
+    assert!((coupling + 0.254).abs() < COUPLING_TOLERANCE, "{coupling}");
 }
 
 /// A load on the opposite side of axis 5 also reverses the sign of its torques.
 #[test]
-fn heavy_loads_are_no_other_sign() {
+fn a_heavy_load_is_not_mistaken_for_a_flipped_sign() {
     let mut nominal = irb1600();
     nominal.links[5].com.z = -0.15;
     let truth = spread(&nominal, 3);
@@ -255,7 +259,7 @@ fn heavy_loads_are_no_other_sign() {
 
 /// A load at the flange tilts with the base.
 #[test]
-fn a_leaning_base_is_told_under_a_heavy_load() {
+fn a_tilted_base_is_found_under_a_heavy_load() {
     let nominal = irb1600();
     let mut truth = spread(&nominal, 5);
     let load = LOAD.map(|x| 15.0 * x);
@@ -269,7 +273,7 @@ fn a_leaning_base_is_told_under_a_heavy_load() {
 
 /// Saturation may grow with a lower power than the cube of the torque.
 #[test]
-fn saturation_is_told_from_friction_of_the_load() {
+fn current_saturation_is_distinguished_from_load_friction() {
     let nominal = irb1600();
     let truth = spread(&nominal, 5);
     let saturation = effect("current_saturation").unwrap();
@@ -282,7 +286,7 @@ fn saturation_is_told_from_friction_of_the_load() {
 
 /// Each joint has a small breakaway step of its friction.
 #[test]
-fn little_friction_at_breakaway_is_not_named() {
+fn a_small_breakaway_friction_is_not_reported() {
     let nominal = irb1600();
     let truth = spread(&nominal, 3);
     let stribeck = effect("stribeck").unwrap();
@@ -298,7 +302,7 @@ fn little_friction_at_breakaway_is_not_named() {
 }
 
 #[test]
-fn two_effects_are_told() {
+fn two_effects_are_found() {
     let nominal = irb1600();
     let truth = spread(&nominal, 6);
     let [payload, stribeck] = ["payload", "stribeck"].map(|id| effect(id).unwrap());
@@ -311,7 +315,7 @@ fn two_effects_are_told() {
 
 /// A strong load, or a strong friction of another joint, does not hide a weak effect.
 #[test]
-fn weak_effects_beside_strong_ones_are_told() {
+fn weak_effects_are_found_beside_strong_ones() {
     let nominal = irb1600();
     let truth = spread(&nominal, 6);
     let [payload, stribeck, spot] =
@@ -327,7 +331,7 @@ fn weak_effects_beside_strong_ones_are_told() {
 
 /// A permanently dragging brake is Coulomb friction.
 #[test]
-fn a_brake_that_never_lets_go_is_friction() {
+fn a_permanently_dragging_brake_is_in_one_class_with_friction() {
     let nominal = irb1600();
     let truth = spread(&nominal, 5);
     let effects = [(effect("brake_drag").unwrap(), 0, [30.0, 0.0, 0.0, 0.0].as_slice())];
@@ -342,7 +346,7 @@ fn a_brake_that_never_lets_go_is_friction() {
 
 /// Late release of the brakes at four joints at once is implausible.
 #[test]
-fn brakes_at_most_joints_are_none() {
+fn brake_drag_at_most_joints_is_not_reported() {
     let nominal = irb1600();
     let truth = spread(&nominal, 5);
     let brake = effect("brake_drag").unwrap();
@@ -358,7 +362,7 @@ fn brakes_at_most_joints_are_none() {
 
 /// With a heavy load the torques hardly resemble those of the robot without it.
 #[test]
-fn heavy_loads_are_no_other_robot() {
+fn a_heavy_load_is_not_mistaken_for_another_robot() {
     let nominal = irb1600();
     let truth = spread(&nominal, 6);
     let [mass, x, y, z] = [15.0, -0.4, 0.4, 0.4];
@@ -380,7 +384,7 @@ fn heavy_loads_are_no_other_robot() {
 
 /// Friction and rotor inertia can decrease at most to zero; the coupling remains.
 #[test]
-fn a_wrist_loses_no_more_than_it_has() {
+fn friction_and_rotor_inertia_of_a_wrist_do_not_become_negative() {
     let nominal = irb1600();
     let change = vec![-0.4, -1e3, -1e3, -1e3];
     let fitted = Fitted {
@@ -400,7 +404,7 @@ fn a_wrist_loses_no_more_than_it_has() {
 
 /// Masses and first moments of loads at the flange add up; centres of mass do not.
 #[test]
-fn a_load_comes_on_top_of_the_one_that_is_listed() {
+fn a_diagnosed_load_is_added_to_the_listed_one() {
     let payload = effect("payload").unwrap();
     let fitted = Fitted {
         effect: payload,
@@ -424,7 +428,7 @@ fn a_load_comes_on_top_of_the_one_that_is_listed() {
 
 /// If most joints differ, the cause is wrong masses or another unit, not the motors.
 #[test]
-fn torque_constants_of_most_joints_are_none() {
+fn wrong_torque_constants_at_most_joints_are_not_reported() {
     let nominal = irb1600();
     let truth = spread(&nominal, 5);
     let constant = effect("torque_constant").unwrap();
@@ -439,7 +443,7 @@ fn torque_constants_of_most_joints_are_none() {
 
 /// The residual of a force's form has a window, too.
 #[test]
-fn a_force_beside_friction_is_no_brake() {
+fn a_force_beside_friction_is_not_mistaken_for_a_brake() {
     let nominal = irb1600();
     let truth = spread(&nominal, 5);
     let [contact, friction] = ["contact", "position_friction"].map(|id| effect(id).unwrap());
@@ -452,7 +456,7 @@ fn a_force_beside_friction_is_no_brake() {
 }
 
 #[test]
-fn bodies_that_cannot_be_keep_their_torques() {
+fn impossible_bodies_are_replaced_by_possible_ones_with_the_same_torques() {
     let nominal = irb1600();
     let n = nominal.dof;
     let count = (RIGID + JOINT) * n;
@@ -483,7 +487,7 @@ fn bodies_that_cannot_be_keep_their_torques() {
 
 /// For torques of other joints and for resting joints no effect is asserted.
 #[test]
-fn logs_that_tell_nothing_of_this_robot_have_no_effect() {
+fn unrelated_torques_and_resting_joints_have_no_effect() {
     let nominal = irb1600();
     let robot = Robot { model: &nominal, effects: &[], noise: 0.005 };
     let diagnosed = |change: &dyn Fn(&mut Samples)| {
@@ -543,7 +547,7 @@ fn logs_that_tell_nothing_of_this_robot_have_no_effect() {
 }
 
 #[test]
-fn another_unit_is_no_effect() {
+fn another_torque_unit_is_recognised_as_a_factor() {
     let nominal = irb1600();
     let truth = spread(&nominal, 3);
     let robot = Robot { model: &truth, effects: &[], noise: 0.005 };

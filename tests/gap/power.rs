@@ -60,7 +60,7 @@ fn named(found: &PowerFound) -> Vec<(&'static str, Option<usize>)> {
 }
 
 #[test]
-fn the_same_power_is_no_effect() {
+fn unchanged_power_has_no_effect() {
     let found = found(&|_, _, _| 0.0);
     assert!(named(&found).is_empty() && !found.is_unknown);
 }
@@ -77,7 +77,7 @@ fn losses_are_found_with_their_size() {
 
 /// An inverter with resistance.
 #[test]
-fn of_a_joints_losses_one_is_told() {
+fn one_kind_of_loss_is_reported_for_a_joint() {
     let more = |log: &Powers, row: usize, share: f64| {
         let tau = log.tau[1][row].abs();
         share * (0.6 * tau + 2e-4 * tau * tau)
@@ -86,7 +86,7 @@ fn of_a_joints_losses_one_is_told() {
 }
 
 #[test]
-fn two_losses_are_told() {
+fn two_losses_are_found() {
     let more = |log: &Powers, row: usize, share: f64| 30.0 + share * 60.0 * log.qd[2][row].powi(2);
     let mut told = named(&found(&more));
     told.sort_unstable();
@@ -95,7 +95,7 @@ fn two_losses_are_told() {
 
 /// A load on the DC link consumes a part of the regenerated energy.
 #[test]
-fn a_load_on_the_link_of_the_drives_is_a_base_load() {
+fn a_load_on_the_dc_link_is_reported_as_base_load() {
     let found = found(&|_, _, share| 60.0 * share);
     assert_eq!(named(&found), [("base_load", None)]);
     assert_eq!(found.effects[0].class, ["base_load", "brake_power"]);
@@ -105,14 +105,14 @@ fn a_load_on_the_link_of_the_drives_is_a_base_load() {
 
 /// With two kinds of losses the reference is accurate to half a percent only.
 #[test]
-fn little_power_is_not_named() {
+fn a_small_change_of_power_is_not_reported() {
     let found = found(&|log, row, share| share * 2e-5 * log.tau[1][row].powi(2));
     assert!(named(&found).is_empty() && !found.is_unknown, "{:?}", found.gap);
 }
 
 /// Power that no loss explains has no name.
 #[test]
-fn other_power_is_unknown() {
+fn unexplained_power_is_unknown() {
     let more = |_: &Powers, row: usize, _: f64| if row % 200 < 60 { 80.0 } else { 0.0 };
     let found = found(&more);
     assert!(named(&found).is_empty() && found.is_unknown);

@@ -60,7 +60,7 @@ fn wrong_references_are_refused() {
 }
 
 #[test]
-fn a_profile_is_evaluated_as_it_integrates() {
+fn a_profile_agrees_with_its_integration() {
     const STEPS: usize = 100_000;
     const TOLERANCE: f64 = 1e-6;
     let s = arm::rest_to_rest_nodes(2.0, 9);
@@ -82,7 +82,7 @@ fn a_profile_is_evaluated_as_it_integrates() {
 }
 
 #[test]
-fn energies_of_a_known_motion() {
+fn energies_of_a_known_motion_are_exact() {
     // Constant acceleration a up to the middle and back: v = √(2 a s); m, f and k of one joint.
     let (length, a, m, f, k) = (2.0f64, 0.8f64, 3.0f64, 4.0f64, 0.05f64);
     let grid = single_joint(length, 40, 1e3, m, f);
@@ -147,7 +147,7 @@ fn the_unit_of_the_path_does_not_matter() {
 }
 
 #[test]
-fn unlimited_time_ends_where_slowness_costs() {
+fn unlimited_time_gives_a_finite_optimal_duration() {
     // Copper losses of holding give an optimal duration.
     let grid = arm::grid(&arm::Path::random(2), 40, 1.0);
     let fastest = time_optimal(&grid, &arm::limits()).into_profile().unwrap();
@@ -162,7 +162,7 @@ fn unlimited_time_ends_where_slowness_costs() {
 }
 
 #[test]
-fn short_and_long_moves_solve() {
+fn short_parts_of_a_path_are_solved() {
     let limits = arm::limits();
     for seed in 0..6 {
         let path = arm::Path::random(seed);
@@ -181,7 +181,7 @@ fn short_and_long_moves_solve() {
 }
 
 #[test]
-fn arbitrary_numbers_end_in_a_status() {
+fn arbitrary_grids_are_solved_or_infeasible() {
     let mut random = arm::Random::new(11);
     let (mut solved, mut refused) = (0, 0);
     for _ in 0..200 {

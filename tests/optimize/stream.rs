@@ -57,7 +57,7 @@ fn smooth(duration: f64) -> Reference {
 }
 
 #[test]
-fn the_motion_of_a_stream_is_met_by_its_own_points() {
+fn fitting_the_motion_of_a_stream_recovers_its_points() {
     const EXACT: f64 = 1e-7;
     let intervals = vec![0.08, 0.05, 0.06, 0.09, 0.07, 0.05, 0.1];
     let point = |i: usize| std::array::from_fn(|j| (0.5 * i as f64 + j as f64).sin());
@@ -173,7 +173,7 @@ fn intervals_follow_the_third_derivative() {
 }
 
 #[test]
-fn the_tolerance_is_met_by_the_spacing_that_is_made_for_it() {
+fn the_adaptive_spacing_meets_its_tolerance() {
     let reference = smooth(1.0);
     for tolerance in [1e-3, 1e-4, 1e-5] {
         let spacing = Spacing { shortest: 0.02, tolerance, ..Spacing::default() };
@@ -185,7 +185,7 @@ fn the_tolerance_is_met_by_the_spacing_that_is_made_for_it() {
 }
 
 #[test]
-fn the_polygon_of_the_points_is_as_near_as_the_spacing_was_asked_for() {
+fn the_polygon_of_the_points_keeps_the_requested_distance() {
     // Two joints on a quarter circle: the polygon lies outside it.
     let circle = |t: f64| {
         let (angle, speed) = (t - (TAU * t).sin() / TAU, 1.0 - (TAU * t).cos());
@@ -250,7 +250,7 @@ const BUS: EnergyModel = EnergyModel {
 };
 
 #[test]
-fn polished_streams_realise_most_of_the_promised_saving() {
+fn polished_streams_realise_most_of_the_predicted_saving() {
     const CORRIDOR: PathPenalty = PathPenalty { tolerance: 1e-3, lever: LEVER };
     let mut shares = Vec::new();
     for seed in 0..10 {
@@ -324,7 +324,7 @@ impl Plant for Flywheel {
 }
 
 #[test]
-fn copper_alone_gives_the_parabola_of_speed_in_the_points() {
+fn copper_losses_alone_give_a_stream_with_parabolic_speed() {
     // The spline has n free speeds: its error of 12 k m² L²/T³ is O(1/n²).
     const SPLINE: f64 = 0.01;
     let (length, time, m, k) = (1.7, 1.3, 3.0, 0.02);

@@ -321,7 +321,7 @@ fn table(compared: &[Compared]) {
 }
 
 #[test]
-fn logged_runs_of_an_irc5() {
+fn simulated_runs_agree_with_logged_runs_of_an_irc5() {
     let Some(programs) = shared("controller_runs/programs.json") else { return };
     let Some(summary) = shared("controller_runs/summary.csv") else { return };
     let programs: Value = serde_json::from_str(&programs).unwrap();

@@ -28,7 +28,7 @@ fn of(robot: &RealRobot) -> Option<Diagnosis> {
 }
 
 #[test]
-fn the_coupled_wrist_of_a_tx40_is_named() {
+fn the_coupled_wrist_of_a_tx40_is_found() {
     let Some(found) = of(&TX40) else { return };
     assert_eq!(named(&found), ["wrist_coupling"]);
     for (joint, most) in [4, 5].into_iter().zip(MISSED) {
@@ -38,7 +38,7 @@ fn the_coupled_wrist_of_a_tx40_is_named() {
 }
 
 #[test]
-fn friction_of_a_ur10_that_grows_with_speed_is_named() {
+fn speed_dependent_friction_of_a_ur10_is_found() {
     let Some(found) = of(&UR10) else { return };
     assert_eq!(named(&found), ["stribeck"]);
     let first = &found.shrink.joints[0];
