@@ -1,15 +1,17 @@
 //! The simulator of the examination compared with the library's dynamics; its seals and grades.
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
+mod command;
+
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
 
+use command::{json, refused, run, stdout};
 use joulepath::arm::dynamics::{self, Data, Load};
 use joulepath::arm::robot::{self, MAX_DOF, Model};
 use joulepath::examine::blind::{self, Case, Grades, Kind, Label, Settings, TrueParameter, Truth};
 use joulepath::learn::log::{ColumnMap, read_csv};
-use serde_json::{Value, json};
+use serde_json::Value;
 
 /// Largest difference of two formulations of the dynamics, relative to the largest torque.
 const SAME: f64 = 1e-9;
@@ -229,12 +231,12 @@ fn label(case: &str, kind: Kind, ids: &[&str]) -> Label {
 }
 
 fn said(id: &str, joints: &[usize], class: &[&str], offset: f64) -> Value {
-    json!({"id": id, "joints": joints, "class": class, "probability": 0.97,
+    serde_json::json!({"id": id, "joints": joints, "class": class, "probability": 0.97,
         "parameters": {"offset": {"value": offset, "sd": 0.1, "unit": "Nm"}}})
 }
 
 fn diagnosis(verdict: &str, effects: &[Value]) -> Value {
-    json!({"verdict": verdict, "effects": effects, "candidates": [], "generic": [],
+    serde_json::json!({"verdict": verdict, "effects": effects, "candidates": [], "generic": [],
         "where": [{"joint": 2, "share_percent": 40.0}, {"joint": 1, "share_percent": 35.0},
                   {"joint": 2, "share_percent": 25.0}], "gap": [], "model": null})
 }
@@ -355,18 +357,6 @@ fn opening_the_seals_detects_a_changed_key() {
     assert!(!sealed.seals.contains("cable") && !sealed.seals.contains("salt"));
 }
 
-fn joulepath(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_joulepath")).args(args).output().unwrap()
-}
-
-fn refused(args: &[&str], way_out: &str) {
-    let output = joulepath(args);
-    let message = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{message}");
-    assert!(message.contains(way_out), "{message}\nlacks {way_out}");
-    assert!(output.stdout.is_empty());
-}
-
 #[test]
 fn grade_reads_the_cases_that_generate_writes() {
     let folder = tempfile::tempdir().unwrap();
@@ -375,20 +365,18 @@ fn grade_reads_the_cases_that_generate_writes() {
     let generate =
         ["blind", "generate", "--out", shown, "--seed", "3", "--count", "4", "--cycles", "2"];
     let generate = [&generate[..], &["--period", "4", "--quiet"]].concat();
-    let output = joulepath(&generate);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    run(&generate);
     refused(&generate, "name a new folder");
     let diagnosis = diagnosis("unknown", &[]).to_string();
     for number in 1..=4 {
         let case = out.join(format!("case-{number:04}"));
         fs::write(case.join("diagnosis.json"), &diagnosis).unwrap();
     }
-    let output = joulepath(&["blind", "grade", shown, "--format", "json"]);
-    let grades: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let grades = json(&["blind", "grade", shown, "--format", "json"]);
     assert_eq!(grades["cases"], 4);
     let page = folder.path().join("grades.html");
-    let output = joulepath(&["blind", "grade", shown, "--report", page.to_str().unwrap()]);
-    assert!(String::from_utf8(output.stdout).unwrap().contains("healthy_named"));
+    let output = run(&["blind", "grade", shown, "--report", page.to_str().unwrap()]);
+    assert!(stdout(&output).contains("healthy_named"));
     let page = fs::read_to_string(page).unwrap();
     for text in ["4 cases", "healthy_named", "What stated probabilities are worth", "</html>"] {
         assert!(page.contains(text), "no {text}");
@@ -433,10 +421,8 @@ fn leaving_out_a_family_removes_all_its_effects() {
     fs::write(out.join(blind::KEY), sealed.key).unwrap();
     fs::write(out.join(blind::SEALS), sealed.seals).unwrap();
     let shown = out.to_str().unwrap();
-    let args = ["blind", "grade", shown, "--leave-out", "family", "--format", "json"];
-    let output = joulepath(&args);
-    let grades: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!((&grades["cases"], &grades["left_out"]), (&json!(1), &json!("family")));
+    let grades = json(&["blind", "grade", shown, "--leave-out", "family", "--format", "json"]);
+    assert_eq!((&grades["cases"], &grades["left_out"]), (&1.into(), &"family".into()));
     let kept = out.join(&case.name).join("diagnosis-without-family.json");
     let kept: Value = serde_json::from_str(&fs::read_to_string(kept).unwrap()).unwrap();
     let all =

@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
+mod command;
 mod support;
 
 use joulepath::arm::dynamics::{Data, torque};
@@ -335,25 +336,13 @@ const BEGINS: u64 = 8;
 
 #[test]
 fn input_files_are_not_overwritten() {
-    let folder = tempfile::tempdir().unwrap();
-    let program = folder.path().join("m.mod");
-    std::fs::write(&program, OTHER).unwrap();
-    let log = folder.path().join("power.csv");
-    std::fs::write(&log, "t,power\n0,400\n").unwrap();
+    let (folder, program) = command::module(OTHER);
+    let log = command::written(&folder, "power.csv", "t,power\n0,400\n");
     for target in [&program, &log] {
         let before = std::fs::read(target).unwrap();
-        let output = std::process::Command::new(env!("CARGO_BIN_EXE_joulepath"))
-            .arg("calibrate")
-            .arg(&program)
-            .args(["--robot", "IRB2600-20/1.65", "--log"])
-            .arg(&log)
-            .arg("--out")
-            .arg(target)
-            .output()
-            .unwrap();
-        let said = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{said}");
-        assert!(said.contains("is read by this command"), "{said}");
+        let args = ["calibrate", &program, "--robot", "IRB2600-20/1.65", "--log", &log];
+        let args = [&args[..], &["--out", target]].concat();
+        command::refused(&args, "is read by this command");
         assert_eq!(std::fs::read(target).unwrap(), before);
     }
 }

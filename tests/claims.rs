@@ -2,13 +2,14 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
+mod command;
+
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
 
+use command::{joulepath, parsed, rows, run, stdout};
 use joulepath::examine::blind::{self, Case, Settings};
 use joulepath::learn::log::{Channel, ColumnMap, Log, read_csv};
-use serde_json::Value;
 
 /// Repetitions of each log.
 const CYCLES: usize = 4;
@@ -22,10 +23,6 @@ const OFFSET: f64 = 0.04;
 /// Tolerance of the claimed reduction in percentage points.
 const SHRINK_TOLERANCE: f64 = 4.0;
 
-fn joulepath(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_joulepath")).args(args).output().unwrap()
-}
-
 /// The rows of a log.
 fn log(text: &str) -> Log {
     read_csv(text.as_bytes(), &ColumnMap::default()).unwrap()
@@ -34,35 +31,29 @@ fn log(text: &str) -> Log {
 /// Rms of the residuals and of the torques by joint: of the mean of the repetitions, while the
 /// joint moves.
 fn residuals(robot: &str, held: &str) -> [Vec<f64>; 2] {
-    let output = joulepath(&["predict", "--robot", robot, "--log", held, "--quiet"]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let predicted: Vec<Vec<f64>> = String::from_utf8(output.stdout)
-        .unwrap()
-        .lines()
-        .skip(1)
-        .map(|line| line.split(',').map(|x| x.parse().unwrap()).collect())
-        .collect();
+    let output = run(&["predict", "--robot", robot, "--log", held, "--quiet"]);
+    let predicted = rows(&stdout(&output));
     let log = log(&fs::read_to_string(held).unwrap());
     let time = log.time();
     assert_eq!(predicted.len(), time.len());
-    let rows = time.len() / CYCLES;
+    let count = time.len() / CYCLES;
     let rms = |joint: usize| {
         let q = log.column(Channel::Position(joint)).unwrap();
         let tau = log.column(Channel::Torque(joint)).unwrap();
         let mean = |of: &dyn Fn(usize) -> f64, phase: usize| -> f64 {
-            (0..CYCLES).map(|k| of(k * rows + phase % rows)).sum::<f64>() / CYCLES as f64
+            (0..CYCLES).map(|k| of(k * count + phase % count)).sum::<f64>() / CYCLES as f64
         };
         let step = time[1] - time[0];
-        let (mut count, mut squares, mut size) = (0.0, 0.0, 0.0);
-        for phase in 0..rows {
-            let change = mean(&|row| q[row], phase + 1) - mean(&|row| q[row], phase + rows - 1);
+        let (mut moving, mut squares, mut size) = (0.0, 0.0, 0.0);
+        for phase in 0..count {
+            let change = mean(&|row| q[row], phase + 1) - mean(&|row| q[row], phase + count - 1);
             if change.abs() > 2.0 * step * RESTS {
-                count += 1.0;
+                moving += 1.0;
                 squares += mean(&|row| tau[row] - predicted[row][1 + joint], phase).powi(2);
                 size += mean(&|row| tau[row], phase).powi(2);
             }
         }
-        [f64::sqrt(squares / count), f64::sqrt(size / count)]
+        [f64::sqrt(squares / moving), f64::sqrt(size / moving)]
     };
     let all: Vec<[f64; 2]> = (0..log.joints()).map(rms).collect();
     [all.iter().map(|of| of[0]).collect(), all.iter().map(|of| of[1]).collect()]
@@ -95,8 +86,7 @@ fn check_claims(case: &Case, id: &str) -> f64 {
     let args = ["diagnose", "--robot", &nominal, "--log", &first, &last, "--heldout", &held];
     let rest = ["--trust", &case.label.trust, "--period", "5", "--effects", id];
     let more = ["--out", &better, "--format", "json", "--quiet"];
-    let output = joulepath(&[&args[..], &rest, &more].concat());
-    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let found = parsed(&joulepath(&[&args[..], &rest, &more].concat()));
     assert_eq!(found["effects"][0]["id"], id, "{found:#}");
     let gap = &found["gap"][0];
     let [before, size] = residuals(&nominal, &held);
@@ -198,16 +188,15 @@ fn warm_up_friction_depends_on_the_time_in_the_log() {
         coulomb = 10.0\ntime_constant = 100.0\n";
     fs::write(&model, text).unwrap();
     let friction = |start: f64| -> f64 {
-        let rows = (0..200).map(|row| {
+        let lines = (0..200).map(|row| {
             let t = 0.01 * f64::from(row);
             format!("{},{t},0,0,0,0,0", start + t)
         });
-        let csv = format!("t,q1,q2,q3,q4,q5,q6\n{}\n", rows.collect::<Vec<_>>().join("\n"));
+        let csv = format!("t,q1,q2,q3,q4,q5,q6\n{}\n", lines.collect::<Vec<_>>().join("\n"));
         let log = at("log.csv");
         fs::write(&log, csv).unwrap();
-        let output = joulepath(&["predict", "--robot", &model, "--log", &log, "--quiet"]);
-        let text = String::from_utf8(output.stdout).unwrap();
-        text.lines().nth(100).unwrap().split(',').nth(1).unwrap().parse().unwrap()
+        let output = run(&["predict", "--robot", &model, "--log", &log, "--quiet"]);
+        rows(&stdout(&output))[99][1]
     };
     let warmed = friction(0.0) - friction(1000.0);
     assert!((warmed - 10.0).abs() < 0.2, "{warmed} Nm");

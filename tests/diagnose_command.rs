@@ -2,16 +2,15 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
+mod command;
+
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
+use command::{joulepath, parsed, refused, run, stderr};
 use joulepath::examine::blind::{self, Settings};
 use serde_json::Value;
-
-fn joulepath(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_joulepath")).args(args).output().unwrap()
-}
 
 /// A short case of the examination in a folder.
 fn case(folder: &Path) {
@@ -52,9 +51,9 @@ fn the_json_has_the_fields_of_the_contract() {
         "--report",
         &page,
     ]);
-    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    let message = stderr(&output);
     assert!(matches!(output.status.code(), Some(0 | 1)), "{message}");
-    let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let value = parsed(&output);
     for key in
         ["verdict", "effects", "candidates", "generic", "where", "gap", "next_experiment", "model"]
     {
@@ -73,13 +72,11 @@ fn the_json_has_the_fields_of_the_contract() {
     // The proposed next experiment is a valid command.
     if let Some(command) = value["next_experiment"]["command"].as_str() {
         let words: Vec<&str> = command.split(' ').skip(1).collect();
-        let output = joulepath(&[&words[..], &["--seed", "none"]].concat());
-        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        let message = stderr(&joulepath(&[&words[..], &["--seed", "none"]].concat()));
         assert!(message.contains("--seed"), "{command}: {message}");
     }
     // The written model is complete for predictions.
-    let output = joulepath(&["predict", "--robot", &out, "--log", &held, "--quiet"]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    run(&["predict", "--robot", &out, "--log", &held, "--quiet"]);
 }
 
 /// The thirds of a quantity add up to the share of its joint, the effects to that of their third.
@@ -139,8 +136,8 @@ fn the_last_cycles_of_a_single_log_are_held_out() {
     let gap = |log: &str| {
         let robot = folder.path().join("nominal.toml").display().to_string();
         let common = ["diagnose", "--robot", &robot, "--period", "4", "--format", "json"];
-        let output = joulepath(&[&common[..], &["--effects", "ripple", "--log", log]].concat());
-        let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let args = [&common[..], &["--effects", "ripple", "--log", log]].concat();
+        let value = parsed(&joulepath(&args));
         assert_eq!(value["gap"][0]["heldout"], "cycles");
         value["gap"][0]["per_joint"][0]["model"].as_f64().unwrap()
     };
@@ -160,12 +157,11 @@ fn a_wrong_period_is_reported_and_corrected() {
     let rest = ["--effects", "ripple", "--format", "json", "--period"];
     let diagnosed = |period: &str| joulepath(&[&logs[..], &rest, &[period]].concat());
     let [right, wrong] = ["4", "2.9"].map(diagnosed);
-    let message = String::from_utf8_lossy(&wrong.stderr).into_owned();
+    let message = stderr(&wrong);
     let told = "--period 2.9: the motion repeats every 4.0000 s; that was used";
     assert!(message.contains(told), "{message}");
     let missed = |output: &Output| -> f64 {
-        let value: Value = serde_json::from_slice(&output.stdout).unwrap();
-        value["gap"][0]["per_joint"][1]["refit"].as_f64().unwrap()
+        parsed(output)["gap"][0]["per_joint"][1]["refit"].as_f64().unwrap()
     };
     let (right, wrong) = (missed(&right), missed(&wrong));
     assert!((wrong / right - 1.0).abs() < 1e-6, "{right} {wrong}");
@@ -210,9 +206,6 @@ fn wrong_input_is_refused() {
         (vec!["--robot", &robot, "--log", &log, "--out", &page, "--report", &page], "another name"),
         (vec!["--robot", &robot, "--log", &log, "--program", &program], "missing.mod"),
     ] {
-        let output = joulepath(&[&["diagnose"], &args[..]].concat());
-        let message = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(2), "{message}");
-        assert!(message.contains(way_out), "{message}\nlacks {way_out}");
+        refused(&[&["diagnose"], &args[..]].concat(), way_out);
     }
 }

@@ -4,13 +4,14 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
+mod command;
+
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
+use command::KNOWN_LIMITS;
 use serde_json::Value;
 
-const ROBOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/known_limits.toml");
 const EXPECTED: &str = "! => ";
 
 const DATA: &str = "\
@@ -36,25 +37,14 @@ fn both(what: &str) -> String {
 }
 
 fn optimize(folder: &Path, text: impl AsRef<[u8]>, options: &[&str]) -> Value {
-    let path = folder.join("m.mod");
-    fs::write(&path, &text).unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
-        .args(["optimize", path.to_str().unwrap(), "--robot", ROBOT, "--allow-faster-joints"])
-        .args(["--format", "json"])
-        .args(["--quiet", "--out", folder.join("out").to_str().unwrap()])
-        .args(options)
-        .output()
-        .unwrap();
-    let shown = String::from_utf8_lossy(text.as_ref());
-    assert!(output.status.success(), "{shown}\n{}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
+    let robot = ["--robot", KNOWN_LIMITS, "--allow-faster-joints"];
+    command::optimize(folder, text, &[&robot[..], options].concat())
 }
 
 /// Compares the result of each movement with its comment; the returned folder contains the output.
 fn check(text: &str, options: &[&str]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let result = optimize(folder.path(), text, options);
-    assert_eq!(result["verification"]["passed"], true, "{text}");
     let segments = result["segments"].as_array().unwrap();
     for (index, line) in text.lines().enumerate() {
         let Some((_, expected)) = line.split_once(EXPECTED) else { continue };

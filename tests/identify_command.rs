@@ -1,21 +1,19 @@
 //! `identify` through the binary: contract, and unusable logs.
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
+mod command;
+
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 
+use command::{IRB1600 as ROBOT, joulepath, parsed, refused, run, stderr, stdout};
 use joulepath::arm::dynamics::{Data, Load, torque};
 use joulepath::arm::robot::{Provenance, find, load, to_toml};
 use serde_json::Value;
 
-const ROBOT: &str = "IRB1600-10/1.45";
 const ROWS: usize = 400;
-
-fn joulepath(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_joulepath")).args(args).output().unwrap()
-}
 
 /// Rows of `t`, positions, rates, accelerations and torques.
 fn rows() -> Vec<Vec<f64>> {
@@ -75,9 +73,17 @@ impl Bench {
     }
 }
 
+fn arguments<'a>(log: &'a Path, more: &[&'a str]) -> Vec<&'a str> {
+    [&["identify", "--robot", ROBOT, "--log", log.to_str().unwrap()], more].concat()
+}
+
 fn identify(log: &Path, more: &[&str]) -> Output {
-    let args = ["identify", "--robot", ROBOT, "--log", log.to_str().unwrap()];
-    joulepath(&[&args[..], more].concat())
+    run(&arguments(log, more))
+}
+
+/// The JSON of an identification.
+fn identified(log: &Path, more: &[&str]) -> Value {
+    parsed(&identify(log, &[more, &["--format", "json"]].concat()))
 }
 
 fn cells(rows: &[Vec<f64>]) -> Vec<Vec<String>> {
@@ -91,9 +97,7 @@ fn the_result_has_the_fields_of_the_contract_and_the_model_predicts() {
     let model = bench.folder.path().join("model.toml");
     let page = bench.folder.path().join("page.html");
     let out = ["--out", model.to_str().unwrap(), "--report", page.to_str().unwrap()];
-    let output = identify(&log, &[&out[..], &["--format", "json"]].concat());
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let found = identified(&log, &out);
     assert_eq!(found["rank"], 58);
     assert_eq!(found["base_parameters"].as_array().unwrap().len(), 58);
     assert_eq!(found["physically_consistent"], true);
@@ -111,9 +115,7 @@ fn the_result_has_the_fields_of_the_contract_and_the_model_predicts() {
 
     // `predict` and the JSON report the same error.
     let args = ["predict", "--robot", model.to_str().unwrap(), "--log", log.to_str().unwrap()];
-    let output = joulepath(&[&args[..], &["-q"]].concat());
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let text = String::from_utf8(output.stdout).unwrap();
+    let text = stdout(&run(&[&args[..], &["-q"]].concat()));
     let all = rows();
     for joint in 0..6 {
         let mut sum = 0.0;
@@ -125,9 +127,7 @@ fn the_result_has_the_fields_of_the_contract_and_the_model_predicts() {
         let told = found["rms"]["train"][joint].as_f64().unwrap();
         assert!((rms / told - 1.0).abs() < 1e-6, "{rms} {told}");
     }
-    let same = identify(&log, &["--format", "json", "-q"]);
-    let again: Value = serde_json::from_slice(&same.stdout).unwrap();
-    assert_eq!(again["base_parameters"], found["base_parameters"]);
+    assert_eq!(identified(&log, &[])["base_parameters"], found["base_parameters"]);
 }
 
 #[test]
@@ -144,9 +144,7 @@ fn repairs_of_a_log_are_reported() {
     broken[60][0] = "-1e200".into();
     broken[70][0] = "5000".into();
     let log = bench.write(&header(), &broken, ",");
-    let output = identify(&log, &[]);
-    assert!(output.status.success());
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    let said = stderr(&identify(&log, &[]));
     for text in [
         "row 12 left out: q3 is 'NaN'",
         "row 22",
@@ -161,9 +159,7 @@ fn repairs_of_a_log_are_reported() {
     // A note reports rates of only some joints as unusable.
     let mut few = header();
     few[12] = "other".into();
-    let output = identify(&bench.write(&few, &cells(&rows()), ","), &[]);
-    assert!(output.status.success());
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    let said = stderr(&identify(&bench.write(&few, &cells(&rows()), ","), &[]));
     assert!(said.contains("no column qd6: qd1, qd2, qd3, qd4, qd5 not used"), "{said}");
     // Semicolons and decimal commas give the same result.
     let plain = bench.write(&header(), &cells(&rows()), ",");
@@ -238,10 +234,7 @@ fn unusable_logs_are_refused_with_the_way_out() {
         ((header(), cells(&rows()[..15])), "usable equations"),
     ] {
         let log = bench.write(&header, &rows, ",");
-        let output = identify(&log, &[]);
-        let text = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(2), "{message}: {text}");
-        assert!(text.contains(message), "{message}: {text}");
+        refused(&arguments(&log, &[]), message);
     }
 }
 
@@ -261,10 +254,9 @@ fn torques_unrelated_to_the_motion_are_refused() {
         .map(|row| [&row[..19], &all[random.usize(..all.len())][19..25]].concat())
         .collect();
     for (rows, message) in [(reversed, "would give power"), (mixed, "explains")] {
-        let output = identify(&bench.write(&header(), &cells(&rows), ","), &[]);
-        let text = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(2), "{message}: {text}");
-        assert!(text.contains("no robot that can be") && text.contains(message), "{text}");
+        let log = bench.write(&header(), &cells(&rows), ",");
+        let text = refused(&arguments(&log, &[]), message);
+        assert!(text.contains("no robot that can be"), "{text}");
     }
     // Half a second has 20 rows.
     let late: Vec<Vec<f64>> = all
@@ -272,8 +264,8 @@ fn torques_unrelated_to_the_motion_are_refused() {
         .zip(&all[20..])
         .map(|(old, new)| [&new[..19], &old[tau.clone()]].concat())
         .collect();
-    let output = identify(&bench.write(&header(), &cells(&late), ","), &[]);
-    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    let log = bench.write(&header(), &cells(&late), ",");
+    let text = stderr(&joulepath(&arguments(&log, &[])));
     assert!(text.contains("0.50 s later than the positions"), "{text}");
 }
 
@@ -288,8 +280,7 @@ fn an_overfitted_model_is_not_graded_good() {
         row[22] += astray;
     }
     let log = bench.write(&header(), &cells(&all), ",");
-    let output = identify(&log, &["--format", "json"]);
-    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let found = identified(&log, &[]);
     let quality = &found["quality"];
     let share = |key: &str| quality[key][3].as_f64().unwrap();
     assert!(share("explained") > 0.7 && share("predicted") < 0.7, "{quality}");
@@ -307,9 +298,8 @@ fn a_joint_that_does_not_move_is_reported() {
     }
     let log = bench.write(&header(), &cells(&all), ",");
     let output = identify(&log, &["--format", "json"]);
-    assert!(output.status.success());
-    assert!(String::from_utf8_lossy(&output.stderr).contains("joint 4 does not move"));
-    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(stderr(&output).contains("joint 4 does not move"));
+    let found = parsed(&output);
     let missing = found["not_determined"].as_array().unwrap();
     assert!(missing.iter().any(|entry| entry["name"] == "fc4"), "{missing:?}");
     assert_eq!(found["joints"][3]["coulomb"], Value::Null);
@@ -322,10 +312,7 @@ fn a_joint_that_does_not_move_is_reported() {
 fn the_descent_of_the_paper_is_close_to_the_unconstrained_fit() {
     let bench = Bench::new();
     let log = bench.write(&header(), &cells(&rows()), ",");
-    let ordinary = ["--method", "ordinary", "--descent", "--format", "json", "-q"];
-    let output = identify(&log, &ordinary);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let found = identified(&log, &["--method", "ordinary", "--descent"]);
     let of = |list: &Value| -> Vec<f64> {
         list.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
     };
@@ -368,9 +355,9 @@ fn torques_too_small_for_the_weight_are_graded_poor() {
     let log = bench.write(&header(), &cells(&all), ",");
     let [robot, log] = [&robot, &log].map(|path| path.to_str().unwrap());
     let output = joulepath(&["identify", "--robot", robot, "--log", log, "--format", "json"]);
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    let said = stderr(&output);
     assert!(said.contains("multiply each tau by its ratio"), "{said}");
-    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let found = parsed(&output);
     assert_eq!(found["quality"]["grade"], "poor", "{}", found["quality"]);
     assert!(found["quality"]["statement"].as_str().unwrap().contains("weight"));
 }
@@ -390,10 +377,8 @@ fn a_model_without_gear_ratios_can_be_read_back() {
     let log = bench.write(&header(), &cells(&all), ",");
     let model = bench.folder.path().join("model.toml");
     let [robot, log, model] = [&robot, &log, &model].map(|path| path.to_str().unwrap());
-    let output = joulepath(&["identify", "--robot", robot, "--log", log, "--out", model]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let output = joulepath(&["predict", "--robot", model, "--log", log]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    run(&["identify", "--robot", robot, "--log", log, "--out", model]);
+    run(&["predict", "--robot", model, "--log", log]);
     let rotors = load(model).unwrap().motors.unwrap().rotor_inertia;
     assert!(rotors.iter().any(|inertia| *inertia > 1.0), "{rotors:?}");
 }
@@ -412,10 +397,8 @@ fn a_log_without_motion_is_refused() {
         .collect();
     let names = header();
     let names = [&names[..7], &names[19..25]].concat();
-    let output = identify(&bench.write(&names, &cells(&still), ","), &[]);
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(2), "{said}");
-    assert!(said.contains("no joint moves"), "{said}");
+    let log = bench.write(&names, &cells(&still), ",");
+    refused(&arguments(&log, &[]), "no joint moves");
 }
 
 #[test]
@@ -424,9 +407,7 @@ fn options_that_do_not_fit_the_logs_are_reported() {
     let log = bench.write(&header(), &cells(&rows()), ",");
     let log = log.to_str().unwrap();
     let args = ["identify", "--robot", ROBOT, "--log", log, log];
-    let output = joulepath(&[&args[..], &["--validate", log, "--period", "3"]].concat());
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.success(), "{said}");
+    let said = stderr(&run(&[&args[..], &["--validate", log, "--period", "3"]].concat()));
     for text in ["it counts twice", "that the model was fitted to", "--period 3 is not used"] {
         assert_eq!(said.matches(text).count(), 1, "{text}: {said}");
     }
@@ -437,9 +418,7 @@ fn options_that_do_not_fit_the_logs_are_reported() {
         ("--period", "-1", "more than 0"),
         ("--period", "1e300", "at most 100000"),
     ] {
-        let output = joulepath(&[&args[..], &[option, value]].concat());
-        assert_eq!(output.status.code(), Some(2));
-        assert!(String::from_utf8_lossy(&output.stderr).contains(text), "{option} {value}");
+        refused(&[&args[..], &[option, value]].concat(), text);
     }
 }
 
@@ -454,9 +433,7 @@ fn a_short_delay_is_reported() {
             .zip(&all[delay..])
             .map(|(old, new)| [&new[..19], &old[19..25]].concat())
             .collect();
-        let output =
-            identify(&bench.write(&header(), &cells(&late), ","), &["--format", "json", "-q"]);
-        let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let found = identified(&bench.write(&header(), &cells(&late), ","), &[]);
         let told = found["quality"]["torques_late_s"].as_f64();
         if delay == 0 {
             assert_eq!(told, None);
@@ -478,8 +455,7 @@ fn the_worst_joint_determines_the_grade() {
         row[21] = 200.0 * (random.f64() - 0.5);
     }
     let log = bench.write(&header(), &cells(&all), ",");
-    let output = identify(&log, &["--format", "json", "-q"]);
-    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let found = identified(&log, &[]);
     assert_eq!(found["quality"]["grade"], "poor", "{}", found["quality"]);
 }
 
@@ -493,8 +469,7 @@ fn the_validation_error_is_that_of_the_written_model() {
         row[20] -= 200.0 * row[8].signum();
     }
     let log = bench.write(&header(), &cells(&all), ",");
-    let output = identify(&log, &["--format", "json", "-q"]);
-    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let found = identified(&log, &[]);
     let of = |key: &str| found[key]["validation"][1].as_f64().unwrap();
     assert!(of("rms") > 2.0 * of("unconstrained_rms"), "{found}");
 }
@@ -506,8 +481,7 @@ fn many_rejected_rows_are_summarised() {
     for row in broken.iter_mut().step_by(20) {
         row[3] = "NaN".into();
     }
-    let output = identify(&bench.write(&header(), &broken, ","), &[]);
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    let said = stderr(&identify(&bench.write(&header(), &broken, ","), &[]));
     assert_eq!(said.matches("left out: q3").count(), 3, "{said}");
     assert!(said.contains("17 more rows left out"), "{said}");
 }
@@ -521,8 +495,7 @@ fn values_of_a_resting_joint_are_not_called_identified() {
     }
     let log = bench.write(&header(), &cells(&all), ",");
     let model = bench.folder.path().join("model.toml");
-    let output = identify(&log, &["--out", model.to_str().unwrap(), "-q"]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    identify(&log, &["--out", model.to_str().unwrap(), "-q"]);
     let found = load(model.to_str().unwrap()).unwrap();
     let coulomb = found.origins.iter().find(|o| o.table == "friction" && o.key == "coulomb");
     let coulomb = coulomb.unwrap();

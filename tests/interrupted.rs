@@ -1,10 +1,13 @@
 //! Output is written completely or not at all, and a second retrofit changes nothing.
 #![expect(clippy::unwrap_used, reason = "a failed set-up fails the test")]
 
-use std::collections::BTreeMap;
+mod command;
+
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
+
+use command::{files, parsed};
 
 /// Number of kill times within the duration of a run.
 const KILLS: u32 = 12;
@@ -15,17 +18,6 @@ fn optimize(program: &str, out: &Path) -> Command {
     command.args(["optimize", program]).args(robot).arg("--out").arg(out);
     command.stdout(Stdio::null()).stderr(Stdio::null());
     command
-}
-
-/// All files of a folder with their bytes.
-fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let entries = std::fs::read_dir(folder).unwrap().map(Result::unwrap);
-    entries
-        .map(|entry| {
-            let name = entry.file_name().to_string_lossy().into_owned();
-            (name, std::fs::read(entry.path()).unwrap())
-        })
-        .collect()
 }
 
 #[test]
@@ -64,7 +56,7 @@ fn a_second_retrofit_changes_nothing() {
     let output = again.output().unwrap();
     assert!(output.status.success());
     assert_eq!(files(&once), files(&twice));
-    let result: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let result = parsed(&output);
     let notes = result["notes"].to_string();
     assert!(notes.contains("every file stays as it was"), "{notes}");
     assert!(result["segments"].as_array().unwrap().iter().all(|s| s["rewritten"] == false));

@@ -3,18 +3,17 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
+mod command;
+
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
+use command::{IRB1600 as ROBOT, KNOWN_LIMITS, number, run_in};
 use joulepath::arm::kinematics::{Body, Capsule};
 use joulepath::arm::robot::find;
 use nalgebra::{Point3, Vector3};
 use serde_json::Value;
 
-const ROBOT: &str = "IRB1600-10/1.45";
-/// The robot with known limits.
-const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/known_limits.toml");
 /// A movement and its return with a tool, away from the limits.
 const PROGRAM: &str = "MODULE M\n\
     PERS tooldata tLong:=[TRUE,[[0,0,180],[1,0,0,0]],[2,[0,0,60],[1,0,0,0],0,0,0]];\n\
@@ -47,7 +46,7 @@ struct Run {
 
 impl Run {
     fn energy(&self) -> f64 {
-        self.result["optimized"]["motion_energy_j"].as_f64().unwrap()
+        number(&self.result, "/optimized/motion_energy_j")
     }
 
     /// The lowest point of arm and tool in the direction `along`, and its position along it.
@@ -60,37 +59,15 @@ impl Run {
     }
 }
 
-fn joulepath(arguments: &[&str]) -> Vec<u8> {
-    let output = Command::new(env!("CARGO_BIN_EXE_joulepath")).args(arguments).output().unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    output.stdout
-}
-
 fn optimized(config: &str, options: &[&str]) -> Run {
     let folder = tempfile::tempdir().unwrap();
-    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
-    let (input, out, csv) = (at("m.mod"), at("out"), at("t.csv"));
-    fs::write(&input, PROGRAM).unwrap();
-    fs::write(at("joulepath.toml"), config).unwrap();
-    let common = [
-        "optimize",
-        &input,
-        "--robot",
-        KNOWN,
-        "--format",
-        "json",
-        "--out",
-        &out,
-        "--allow-faster-joints",
-        "--layout",
-        "plain",
-    ];
-    let result: Value =
-        serde_json::from_slice(&joulepath(&[&common[..], options].concat())).unwrap();
-    assert_eq!(result["verification"]["passed"], true);
-    joulepath(&["simulate", &out, "--robot", KNOWN, "--trajectory", &csv]);
-    let text = fs::read_to_string(folder.path().join("out/Joulepath.mod")).unwrap();
-    Run { result, motion: motion(Path::new(&csv)), polygon: polygon(&text) }
+    let folder = folder.path();
+    fs::write(folder.join("joulepath.toml"), config).unwrap();
+    let common = ["--robot", KNOWN_LIMITS, "--allow-faster-joints", "--layout", "plain"];
+    let result = command::optimize(folder, PROGRAM, &[&common[..], options].concat());
+    run_in(folder, &["simulate", "out", "--robot", KNOWN_LIMITS, "--trajectory", "t.csv"]);
+    let text = fs::read_to_string(folder.join("out/Joulepath.mod")).unwrap();
+    Run { result, motion: motion(&folder.join("t.csv")), polygon: polygon(&text) }
 }
 
 /// The polygons of all streams in a module's text.

@@ -2,22 +2,16 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
+mod command;
+
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 
-use serde_json::Value;
+use command::{joulepath, joulepath_in, parsed, refused, stderr, stdout};
 
 const ROBOT: [&str; 2] = ["--robot", "IRB1600-10/1.45"];
 const UNSAFE: [&str; 3] = ["--unsafe-fixes", "--select", "EW103"];
-
-fn joulepath(args: &[&str], folder: &Path) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_joulepath")).args(args).current_dir(folder).output().unwrap()
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).unwrap()
-}
 
 /// A folder with a program of `fixtures/lint`.
 fn folder(name: &str) -> tempfile::TempDir {
@@ -29,9 +23,9 @@ fn folder(name: &str) -> tempfile::TempDir {
 
 fn codes(args: &[&str], folder: &Path) -> Vec<String> {
     let args = [&["lint", ".", "--format", "json", "--quiet"], args].concat();
-    let output = joulepath(&args, folder);
-    assert!(output.status.code() < Some(2), "{}", text(&output.stderr));
-    let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let output = joulepath_in(folder, &args);
+    assert!(output.status.code() < Some(2), "{}", stderr(&output));
+    let value = parsed(&output);
     let findings = value["findings"].as_array().unwrap();
     findings.iter().map(|it| it["code"].as_str().unwrap().to_owned()).collect()
 }
@@ -41,7 +35,7 @@ fn exit_codes_agree_with_the_contract() {
     let folder = folder("EW102_stop_in_line.mod");
     let code = |args: &[&str]| {
         let args = [&["lint", "."], args].concat();
-        joulepath(&args, folder.path()).status.code().unwrap()
+        joulepath_in(folder.path(), &args).status.code().unwrap()
     };
     assert_eq!(code(&ROBOT), 0);
     assert_eq!(code(&[&ROBOT[..], &["--max-waste", "100000J"]].concat()), 0);
@@ -52,7 +46,7 @@ fn exit_codes_agree_with_the_contract() {
     assert_eq!(code(&[&ROBOT[..], &["--threshold", "nan"]].concat()), 2);
     assert_eq!(code(&["--max-waste", "1J"]), 2);
     assert_eq!(code(&["--select", "EW999"]), 2);
-    assert_eq!(joulepath(&["lint", "gone.mod"], folder.path()).status.code(), Some(2));
+    assert_eq!(joulepath_in(folder.path(), &["lint", "gone.mod"]).status.code(), Some(2));
 }
 
 #[test]
@@ -71,9 +65,9 @@ fn options_and_configuration_select_rules() {
     assert!(codes(&ROBOT, folder.path()).is_empty());
     let wrong = format!("{config}[lint.thresholds-j]\nEW999 = 1.0\n");
     fs::write(folder.path().join("joulepath.toml"), wrong).unwrap();
-    let output = joulepath(&["lint", "."], folder.path());
+    let output = joulepath_in(folder.path(), &["lint", "."]);
     assert_eq!(output.status.code(), Some(2));
-    assert!(text(&output.stderr).contains("'EW999'"), "{}", text(&output.stderr));
+    assert!(stderr(&output).contains("'EW999'"), "{}", stderr(&output));
     let more = format!("{config}[lint.per-file-ignores]\n\"C*.mod\" = [\"stops\"]\n");
     fs::write(folder.path().join("joulepath.toml"), more).unwrap();
     assert!(codes(&ROBOT, folder.path()).is_empty());
@@ -97,7 +91,10 @@ fn a_baseline_hides_known_findings() {
     assert!(codes(&["--baseline", "known.json"], folder.path()).is_empty());
     fs::write(&path, &new).unwrap();
     assert_eq!(codes(&["--baseline", "known.json"], folder.path()), ["EW101"]);
-    assert_eq!(joulepath(&["lint", ".", "--baseline", "x"], folder.path()).status.code(), Some(2));
+    assert_eq!(
+        joulepath_in(folder.path(), &["lint", ".", "--baseline", "x"]).status.code(),
+        Some(2)
+    );
 }
 
 #[test]
@@ -106,23 +103,23 @@ fn fixes_are_shown_and_written() {
     let path = folder.path().join("Cell.mod");
     let before = fs::read(&path).unwrap();
     let output =
-        joulepath(&[&["lint", ".", "--diff"], &UNSAFE[..], &ROBOT].concat(), folder.path());
-    let diff = text(&output.stdout);
+        joulepath_in(folder.path(), &[&["lint", ".", "--diff"], &UNSAFE[..], &ROBOT].concat());
+    let diff = stdout(&output);
     assert_eq!(diff.lines().filter(|line| line.starts_with("-  ")).count(), 1, "{diff}");
     assert!(diff.contains("+        MoveJ Offs(pAUp,-50,450,100),v1500,z50,tGripper"), "{diff}");
     assert_eq!(fs::read(&path).unwrap(), before);
     // `--fix` alone does not apply fixes that need a review.
-    joulepath(&[&["lint", ".", "--fix"], &ROBOT[..]].concat(), folder.path());
+    joulepath_in(folder.path(), &[&["lint", ".", "--fix"], &ROBOT[..]].concat());
     assert_eq!(fs::read(&path).unwrap(), before);
-    let output = joulepath(&[&["lint", "."], &UNSAFE[..], &ROBOT].concat(), folder.path());
-    assert!(text(&output.stderr).contains("1 fixes applied"), "{}", text(&output.stderr));
+    let output = joulepath_in(folder.path(), &[&["lint", "."], &UNSAFE[..], &ROBOT].concat());
+    assert!(stderr(&output).contains("1 fixes applied"), "{}", stderr(&output));
     let after = fs::read(&path).unwrap();
     assert_ne!(after, before);
-    joulepath(&[&["lint", "."], &UNSAFE[..], &ROBOT].concat(), folder.path());
+    joulepath_in(folder.path(), &[&["lint", "."], &UNSAFE[..], &ROBOT].concat());
     assert_eq!(fs::read(&path).unwrap(), after);
     // Without a robot no fix can be verified.
     fs::write(&path, &before).unwrap();
-    joulepath(&[&["lint", "."], &UNSAFE[..]].concat(), folder.path());
+    joulepath_in(folder.path(), &[&["lint", "."], &UNSAFE[..]].concat());
     assert_eq!(fs::read(&path).unwrap(), before);
 }
 
@@ -135,8 +132,8 @@ fn read_only_files_are_kept_and_links_stay_links() {
     let before = fs::read(&path).unwrap();
     fs::set_permissions(&path, fs::Permissions::from_mode(0o444)).unwrap();
     let fix = |name: &str| {
-        let output = joulepath(&[&["lint", name], &UNSAFE[..], &ROBOT].concat(), folder.path());
-        (output.status.code(), text(&output.stderr))
+        let output = joulepath_in(folder.path(), &[&["lint", name], &UNSAFE[..], &ROBOT].concat());
+        (output.status.code(), stderr(&output))
     };
     let (code, said) = fix("Cell.mod");
     assert_eq!(code, Some(2));
@@ -158,8 +155,8 @@ fn infinite_energies_are_left_out_of_the_total() {
                    v1000,fine,tool0;\n  WaitTime 1E308;\n  WaitTime 1E308;\nENDPROC\nENDMODULE\n";
     fs::write(folder.path().join("Endless.mod"), endless).unwrap();
     let args = [&["lint", ".", "--format", "json", "--max-waste", "0.001%"], &ROBOT[..]].concat();
-    let output = joulepath(&args, folder.path());
-    let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let output = joulepath_in(folder.path(), &args);
+    let value = parsed(&output);
     assert!(value["totals"]["cycle_energy_j"].as_f64().is_some_and(|energy| energy > 0.0));
     assert_eq!(output.status.code(), Some(1));
 }
@@ -191,7 +188,7 @@ fn statistics_show_joules_only_with_a_robot() {
     let folder = folder("EW102_stop_in_line.mod");
     let last = |args: &[&str]| {
         let args = [&["lint", ".", "--statistics", "--select", "EW102"], args].concat();
-        let table = text(&joulepath(&args, folder.path()).stderr);
+        let table = stderr(&joulepath_in(folder.path(), &args));
         let row = table.lines().find(|line| line.trim_start().starts_with("EW102")).unwrap();
         row.split_whitespace().last().unwrap().to_owned()
     };
@@ -202,7 +199,7 @@ fn statistics_show_joules_only_with_a_robot() {
 #[test]
 fn the_reason_for_missing_joules_is_reported() {
     let folder = folder("EW102_stop_in_line.mod");
-    let said = |args: &[&str]| text(&joulepath(args, folder.path()).stderr);
+    let said = |args: &[&str]| stderr(&joulepath_in(folder.path(), args));
     let lint = |more: &[&str]| said(&[&["lint", "Cell.mod"], more].concat());
     assert!(lint(&[]).contains("nothing has joules: no robot is named"));
     let bare = "extends = \"IRB120-3/0.58\"\nname = \"another\"\n";
@@ -301,25 +298,19 @@ fn backup_rules_find_planted_faults_and_no_near_misses() {
 
 #[test]
 fn rule_shows_the_manual() {
-    let here = Path::new(".");
-    let output = text(&joulepath(&["rule", "EW101"], here).stdout);
+    let output = stdout(&joulepath(&["rule", "EW101"]));
     assert!(output.starts_with("# EW101 unneeded-stop-point"), "{output}");
     assert!(output.contains("## Why it wastes energy"));
-    let list = text(&joulepath(&["rule"], here).stdout);
+    let list = stdout(&joulepath(&["rule"]));
     assert!(list.lines().count() > 30 && list.contains("EW802"), "{list}");
-    let wrong = joulepath(&["rule", "EW1011"], here);
-    assert_eq!(wrong.status.code(), Some(2));
-    assert!(text(&wrong.stderr).contains("did you mean EW101"), "{}", text(&wrong.stderr));
+    refused(&["rule", "EW1011"], "did you mean EW101");
 }
 
 /// A folder of unrelated programs with an entry each is linted file by file.
 #[test]
 fn unrelated_programs_are_linted_separately() {
-    let output = joulepath(
-        &[&["lint", "fixtures/lint", "--format", "json", "--quiet"], &ROBOT[..]].concat(),
-        Path::new("."),
-    );
-    let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let args = [&["lint", "fixtures/lint", "--format", "json", "--quiet"], &ROBOT[..]].concat();
+    let value = parsed(&joulepath(&args));
     let findings = value["findings"].as_array().unwrap();
     let has = |code: &str| findings.iter().any(|finding| finding["code"] == code);
     assert!(has("EW101") && has("EW405") && has("EW703"));
@@ -332,8 +323,8 @@ fn broken_programs_are_linted_too() {
     {
         for robot in [&ROBOT[..], &[]] {
             let args = [&["lint", folder, "--format", "concise", "--quiet"], robot].concat();
-            let output = joulepath(&args, Path::new("."));
-            assert_eq!(output.status.code(), Some(0), "{folder}: {}", text(&output.stderr));
+            let output = joulepath(&args);
+            assert_eq!(output.status.code(), Some(0), "{folder}: {}", stderr(&output));
         }
     }
 }
@@ -353,10 +344,10 @@ fn the_pre_commit_hook_reads_whole_programs() {
     fs::write(folder.path().join("Data.mod"), data).unwrap();
     fs::write(folder.path().join("Cell.mod"), main).unwrap();
     let args: Vec<&str> = entry.split_whitespace().chain([paths]).collect();
-    let output = joulepath(&args, folder.path());
-    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
-    assert_eq!(text(&output.stdout), "");
+    let output = joulepath_in(folder.path(), &args);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(stdout(&output), "");
     // A single file alone would have a finding.
-    let alone = joulepath(&["lint", "Cell.mod", "--format", "concise"], folder.path());
-    assert!(text(&alone.stdout).contains("EW704"), "{}", text(&alone.stdout));
+    let alone = joulepath_in(folder.path(), &["lint", "Cell.mod", "--format", "concise"]);
+    assert!(stdout(&alone).contains("EW704"), "{}", stdout(&alone));
 }

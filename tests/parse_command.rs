@@ -2,19 +2,21 @@
 
 #![expect(clippy::unwrap_used, reason = "what cannot be run or read fails the test")]
 
-use std::path::Path;
-use std::process::{Command, Output};
+mod command;
 
+use std::path::Path;
+use std::process::Output;
+
+use command::{joulepath, parsed, stderr, stdout};
 use joulepath::rapid::syntax::{self, TokenKind};
 use serde_json::Value;
 
 fn parse(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_joulepath")).arg("parse").args(arguments).output().unwrap()
+    joulepath(&[&["parse"], arguments].concat())
 }
 
 fn json(arguments: &[&str]) -> Value {
-    let output = parse(&[&["--format", "json"], arguments].concat());
-    serde_json::from_slice(&output.stdout).unwrap()
+    parsed(&parse(&[&["--format", "json"], arguments].concat()))
 }
 
 fn folder(files: &[(&str, &[u8])]) -> tempfile::TempDir {
@@ -64,15 +66,14 @@ fn exit_codes_distinguish_errors_from_unusable_input() {
     // One file is readable, so the missing one is only a note.
     let output = parse(&[&path("gone.mod"), &path("good.mod")]);
     assert_eq!(output.status.code(), Some(0));
-    assert!(String::from_utf8_lossy(&output.stderr).contains("gone.mod"));
+    assert!(stderr(&output).contains("gone.mod"));
 }
 
 #[test]
 fn text_shows_errors_and_a_summary() {
     let folder = folder(&[("bad.mod", BAD)]);
     let path = folder.path().join("bad.mod");
-    let output = parse(&[shown(&path)]);
-    let text = String::from_utf8(output.stdout).unwrap();
+    let text = stdout(&parse(&[shown(&path)]));
     insta::assert_snapshot!(text.replace(shown(folder.path()), "(folder)"));
 }
 

@@ -6,18 +6,17 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
+mod command;
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
+use command::{IRB1600 as ROBOT, KNOWN_LIMITS};
 use joulepath::arm::dynamics::{Data, Load, torque};
 use joulepath::arm::robot::{Model, Sharing, find};
 use serde_json::Value;
 
-const ROBOT: &str = "IRB1600-10/1.45";
-/// The robot with known limits.
-const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/known_limits.toml");
 /// Axis speeds of the data sheet, degrees/s.
 const SPEEDS: [f64; 6] = [180.0, 180.0, 185.0, 385.0, 400.0, 460.0];
 /// a1, c1, c2, c3, c4 of the data sheet, mm.
@@ -359,19 +358,9 @@ fn check_stream(model: &Model, stream: &Stream, segment: &Value, (way, ceiling):
 }
 
 fn optimize(folder: &Path, options: &[&str]) -> (Value, String) {
-    let path = folder.join("m.mod");
-    fs::write(&path, program()).unwrap();
-    let out = folder.join("out");
-    let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
-        .args(["optimize", path.to_str().unwrap(), "--robot", KNOWN, "--allow-faster-joints"])
-        .args(["--format", "json"])
-        .args(["--quiet", "--out", out.to_str().unwrap()])
-        .args(options)
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let text = fs::read_to_string(out.join("Joulepath.mod")).unwrap();
-    (serde_json::from_slice(&output.stdout).unwrap(), text)
+    let robot = ["--robot", KNOWN_LIMITS, "--allow-faster-joints"];
+    let result = command::optimize(folder, program(), &[&robot[..], options].concat());
+    (result, fs::read_to_string(folder.join("out/Joulepath.mod")).unwrap())
 }
 
 #[test]

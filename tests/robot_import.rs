@@ -2,9 +2,12 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
-use std::fs;
-use std::process::{Command, Output};
+mod command;
 
+use std::fs;
+use std::process::Output;
+
+use command::{parsed, stderr, stdout, written};
 use insta::assert_snapshot;
 use joulepath::arm::dynamics::{Data, Load, gravity};
 use joulepath::arm::kinematics::{conf_of, fk, ik_all, ik_conf, limits_ok};
@@ -390,7 +393,6 @@ fn a_load_is_added_once_to_the_arm_that_names_it() {
 #[test]
 fn the_check_reports_values_in_other_units() {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("robot.toml").display().to_string();
     let link =
         "[[link]]\nmass = 31\ncom = [0, 0, 0]\ninertia = [530000, 540000, 120000, 0, 0, 0]\n";
     for (more, place) in [
@@ -403,7 +405,8 @@ fn the_check_reports_values_in_other_units() {
         (format!("[limits]\nposition = [{}]\n", "[-45, 45],".repeat(6)), "joint 1: up to 45 rad"),
         ("[kinematics.opw]\na1 = 15\n".into(), "m long"),
     ] {
-        fs::write(&path, format!("extends = \"IRB1600-10/1.45\"\n{more}")).unwrap();
+        let text = format!("extends = \"IRB1600-10/1.45\"\n{more}");
+        let path = written(&folder, "robot.toml", text);
         let output = robots(&["check", &path]);
         assert_eq!(output.status.code(), Some(1), "{more}");
         assert!(stdout(&output).contains(place), "{}", stdout(&output));
@@ -413,14 +416,12 @@ fn the_check_reports_values_in_other_units() {
 #[test]
 fn missing_data_are_added_by_extending_the_file() {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("arm.urdf").display().to_string();
-    fs::write(&path, arm().replace(INERTIAL, "")).unwrap();
+    let path = written(&folder, "arm.urdf", arm().replace(INERTIAL, ""));
     let message = ready(&load(&path).unwrap(), Use::Predict).unwrap_err().to_string();
     let extends = format!("extends = \"{path}\"");
     assert!(message.contains(&extends), "{message}");
-    let overlay = folder.path().join("more.toml").display().to_string();
     let link = "[[link]]\nmass = 1\ncom = [0, 0, 0]\ninertia = [1, 1, 1, 0, 0, 0]\n";
-    fs::write(&overlay, format!("{extends}\n{}", link.repeat(2))).unwrap();
+    let overlay = written(&folder, "more.toml", format!("{extends}\n{}", link.repeat(2)));
     assert!(ready(&load(&overlay).unwrap(), Use::Predict).is_ok());
 }
 
@@ -440,18 +441,14 @@ fn the_robot_of_the_backup_passes_the_check() {
 }
 
 fn robots(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_joulepath")).arg("robots").args(args).output().unwrap()
-}
-
-fn stdout(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).unwrap()
+    command::joulepath(&[&["robots"], args].concat())
 }
 
 #[test]
 fn every_known_robot_passes_the_check() {
     let output = robots(&["check", "--format", "json"]);
     assert_eq!(output.status.code(), Some(0));
-    let found: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let found = parsed(&output);
     assert!(found["passed"].as_u64().unwrap() >= 60);
     let all = found["robots"].as_array().unwrap();
     assert!(all.iter().all(|robot| robot["sound"] == true));
@@ -466,7 +463,7 @@ fn every_known_robot_passes_the_check() {
 #[test]
 fn show_prints_each_value_with_its_interval() {
     let output = robots(&["show", "IRB2600-20/1.65", "--format", "json"]);
-    let found: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let found = parsed(&output);
     let figures = found["figures"].as_array().unwrap();
     for figure in figures {
         let bound = |i: usize| figure["interval"][i].as_f64().unwrap();
@@ -502,15 +499,15 @@ fn imported_robots_can_be_used_and_extended() {
 #[test]
 fn wrong_files_give_exit_code_2_and_one_message() {
     let folder = tempfile::tempdir().unwrap();
-    let write = |name: &str, text: &str| {
-        let path = folder.path().join(name);
-        fs::write(&path, text).unwrap();
-        path.display().to_string()
-    };
-    let urdf = write("arm.urdf", &arm().replace("value=\"2\"", "value=\"-2\""));
-    let cut = write("MOC.cfg", &configuration()[..700]);
-    let unit = write("unit.toml", "extends = \"IRB140\"\n[limits]\ntcp_speed_mm = 250\n");
-    let key = write("key.toml", "extends = \"IRB140\"\n[limits]\nvelocity = [\"200 deg/s\"]\n");
+    let urdf = written(&folder, "arm.urdf", &arm().replace("value=\"2\"", "value=\"-2\""));
+    let cut = written(&folder, "MOC.cfg", &configuration()[..700]);
+    let unit =
+        written(&folder, "unit.toml", "extends = \"IRB140\"\n[limits]\ntcp_speed_mm = 250\n");
+    let key = written(
+        &folder,
+        "key.toml",
+        "extends = \"IRB140\"\n[limits]\nvelocity = [\"200 deg/s\"]\n",
+    );
     for args in [
         ["check", &urdf],
         ["import", &urdf],
@@ -525,7 +522,7 @@ fn wrong_files_give_exit_code_2_and_one_message() {
     ] {
         let output = robots(&args);
         assert_eq!(output.status.code(), Some(2), "{args:?}");
-        let message = String::from_utf8(output.stderr).unwrap();
+        let message = stderr(&output);
         assert_eq!(message.trim_end().lines().count(), 1, "{message}");
         assert!(message.starts_with("error: ") && output.stdout.is_empty(), "{message}");
     }

@@ -1,21 +1,16 @@
 //! `standstill` through the binary: the contract of its JSON, and the table of the paper.
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
-use std::process::{Command, Output};
+mod command;
 
+use command::{refused, written};
 use serde_json::Value;
 
 /// Table 3 has joints 2 and 3 in whole watts.
 const PRINTED_W: f64 = 0.5;
 
-fn standstill(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_joulepath")).arg("standstill").args(args).output().unwrap()
-}
-
 fn json(args: &[&str]) -> Value {
-    let output = standstill(&[args, &["--format", "json", "--quiet"]].concat());
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
+    command::json(&[&["standstill"], args, &["--format", "json", "--quiet"]].concat())
 }
 
 fn numbers(value: &Value) -> Vec<f64> {
@@ -120,10 +115,7 @@ fn missing_or_wrong_arguments_are_refused() {
         (vec!["--robot", "IRB1600-10/1.45", "--pose", "1e300,0,0,0,0,0"], "at 1.000e300 deg"),
         (vec!["--robot", "IRB1600-10/1.45"], "--pose DEG"),
     ] {
-        let output = standstill(&args);
-        let message = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(2), "{args:?}");
-        assert!(message.contains(way_out), "{message}");
+        refused(&[&["standstill"], &args[..]].concat(), way_out);
     }
 }
 
@@ -131,9 +123,9 @@ fn missing_or_wrong_arguments_are_refused() {
 #[test]
 fn an_unknown_arm_has_estimates() {
     let folder = tempfile::tempdir().unwrap();
-    let bare = folder.path().join("bare.toml");
-    std::fs::write(&bare, "extends = \"IRB120-3/0.58\"\nname = \"another\"\n").unwrap();
-    let result = json(&["--robot", bare.to_str().unwrap(), "--pose", "0,0,0,0,0,0"]);
+    let text = "extends = \"IRB120-3/0.58\"\nname = \"another\"\n";
+    let bare = written(&folder, "bare.toml", text);
+    let result = json(&["--robot", &bare, "--pose", "0,0,0,0,0,0"]);
     assert!(result["poses"][0]["holding_w"].as_f64().unwrap() > 0.0, "{result}");
 }
 

@@ -2,9 +2,11 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
-use std::fs;
-use std::process::Command;
+mod command;
 
+use std::fs;
+
+use command::{IRB1600, joulepath, module, run, stderr, stdout};
 use joulepath::arm::kinematics::{Tcp, fk, jacobian};
 use joulepath::arm::robot::{Model, find, from_toml};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
@@ -94,16 +96,10 @@ const GLUE: &str = "MODULE M\n\
 
 #[test]
 fn the_workpiece_moves_along_the_line() {
-    let folder = tempfile::tempdir().unwrap();
-    let (program, motion) = (folder.path().join("m.mod"), folder.path().join("motion.csv"));
-    fs::write(&program, GLUE).unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
-        .args(["simulate", program.to_str().unwrap(), "--robot", "IRB1600-10/1.45"])
-        .args(["--start", "0,0,0,0,30,0", "--trajectory", motion.to_str().unwrap()])
-        .output()
-        .unwrap();
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.success(), "{said}");
+    let (folder, program) = module(GLUE);
+    let motion = folder.path().join("motion.csv");
+    let args = ["simulate", &program, "--robot", IRB1600, "--start", "0,0,0,0,30,0"];
+    let said = stderr(&run(&[&args[..], &["--trajectory", motion.to_str().unwrap()]].concat()));
     assert!(!said.contains("not simulated"), "{said}");
 
     let model = find("IRB1600-10/1.45").unwrap();
@@ -140,13 +136,8 @@ fn the_workpiece_moves_along_the_line() {
 
 #[test]
 fn a_robot_that_holds_neither_tool_nor_work_object_is_reported() {
-    let folder = tempfile::tempdir().unwrap();
-    let program = folder.path().join("m.mod");
-    fs::write(&program, GLUE.replace("[TRUE,TRUE", "[FALSE,TRUE")).unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
-        .args(["simulate", program.to_str().unwrap(), "--robot", "IRB1600-10/1.45"])
-        .output()
-        .unwrap();
-    let said = String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr);
+    let (_folder, program) = module(GLUE.replace("[TRUE,TRUE", "[FALSE,TRUE"));
+    let output = joulepath(&["simulate", &program, "--robot", IRB1600]);
+    let said = stdout(&output) + &stderr(&output);
     assert!(said.contains("the robot holds neither"), "{said}");
 }

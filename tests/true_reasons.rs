@@ -2,14 +2,13 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
+mod command;
+
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
+use command::{KNOWN_LIMITS, json, module};
 use serde_json::Value;
-
-/// The robot with known limits.
-const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/known_limits.toml");
 
 const FAR: &str = "[9E9,9E9,9E9,9E9,9E9,9E9]";
 /// Tolerance between two computations of the same energy, J.
@@ -20,15 +19,10 @@ fn optimize(input: &Path, out: &Path) -> Value {
 }
 
 fn optimize_with(input: &Path, out: &Path, args: &[&str]) -> Value {
-    let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
-        .args(["optimize", input.to_str().unwrap(), "--robot", KNOWN, "--allow-faster-joints"])
-        .arg("--inline-targets")
-        .args(args)
-        .args(["--format", "json", "--quiet", "--out", out.to_str().unwrap()])
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let result: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let (input, out) = (input.to_str().unwrap(), out.to_str().unwrap());
+    let robot = ["--robot", KNOWN_LIMITS, "--allow-faster-joints", "--inline-targets"];
+    let form = ["optimize", input, "--out", out, "--format", "json", "--quiet"];
+    let result = json(&[&form[..], &robot, args].concat());
     assert_eq!(result["verification"]["passed"], true, "{result}");
     result
 }
@@ -39,12 +33,10 @@ fn segments(declarations: &str, movements: &[String]) -> Vec<Value> {
 }
 
 fn segments_with(declarations: &str, movements: &[String], args: &[&str]) -> Vec<Value> {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("m.mod");
     let movements = movements.join("\n");
     let text = format!("MODULE M\n{declarations}PROC main()\n{movements}\nENDPROC\nENDMODULE\n");
-    fs::write(&path, text).unwrap();
-    let result = optimize_with(&path, &folder.path().join("out"), args);
+    let (folder, path) = module(text);
+    let result = optimize_with(Path::new(&path), &folder.path().join("out"), args);
     result["segments"].as_array().unwrap().clone()
 }
 
@@ -245,12 +237,8 @@ fn the_original_runs_where_a_variable_has_another_value() {
     fs::write(out.join("m.mod"), written.replace("h:=60;", "h:=200;")).unwrap();
     fs::write(&path, program("200")).unwrap();
     let [was, now] = [&path, &out].map(|input| {
-        let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
-            .args(["simulate", input.to_str().unwrap(), "--robot", KNOWN])
-            .args(["--format", "json", "--quiet"])
-            .output()
-            .unwrap();
-        serde_json::from_slice::<Value>(&output.stdout).unwrap()
+        let input = input.to_str().unwrap();
+        json(&["simulate", input, "--robot", KNOWN_LIMITS, "--format", "json", "--quiet"])
     });
     let lines = |result: &Value| -> Vec<f64> {
         let moves = result["moves"].as_array().unwrap();

@@ -2,12 +2,11 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
-use std::fs;
-use std::process::Command;
+mod command;
 
+use command::{KNOWN_LIMITS, number};
 use serde_json::Value;
 
-const ROBOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/known_limits.toml");
 /// Rounding of a sum of times, s.
 const TIME: f64 = 1e-6;
 
@@ -33,23 +32,10 @@ fn program(line: &str) -> String {
 
 fn optimize(text: &str, options: &[&str]) -> Value {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("m.mod");
-    fs::write(&path, text).unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
-        .args(["optimize", path.to_str().unwrap(), "--robot", ROBOT, "--allow-faster-joints"])
-        .args(["--format", "json"])
-        .args(options)
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let result: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(result["verification"]["passed"], true);
+    let robot = ["--robot", KNOWN_LIMITS, "--allow-faster-joints"];
+    let result = command::optimize(folder.path(), text, &[&robot[..], options].concat());
     assert!(number(&result, "/optimized/cycle_s") <= number(&result, "/original/cycle_s") + TIME);
     result
-}
-
-fn number(value: &Value, pointer: &str) -> f64 {
-    value.pointer(pointer).and_then(Value::as_f64).unwrap()
 }
 
 /// Time of the run that starts at a line, in the original and in the retrofit.
