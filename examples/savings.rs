@@ -50,11 +50,11 @@ fn main() {
     let cases = cases::cases(&EASY, COUNT);
     for factor in FACTORS {
         let all: Vec<Saving> = cases.par_iter().filter_map(|case| saving(case, factor)).collect();
-        let of = |f: &dyn Fn(&Saving) -> f64| quartiles(all.iter().map(f).collect());
+        let spread = |f: &dyn Fn(&Saving) -> f64| quartiles(all.iter().map(f).collect());
         println!("{factor} × the least time, {} paths:", all.len());
-        println!("  uniform slowing   {}", of(&|s| 100.0 * s.uniform));
-        println!("  optimal profile   {}", of(&|s| 100.0 * s.optimal));
-        println!("  gap of the bound  {}", of(&|s| 100.0 * s.gap));
+        println!("  uniform slowing   {}", spread(&|s| 100.0 * s.uniform));
+        println!("  optimal profile   {}", spread(&|s| 100.0 * s.optimal));
+        println!("  gap of the bound  {}", spread(&|s| 100.0 * s.gap));
         let streams: Vec<(f64, f64)> =
             all.iter().filter_map(|s| Some((s.realised?, s.optimal))).collect();
         println!("  streams           {} of {}", streams.len(), all.len());

@@ -133,8 +133,8 @@ fn faults(model: &Model, robot: &str, slow: bool) -> Vec<String> {
         // Infinite and undefined numbers are null in JSON.
         let first = value.trim_start_matches(['[', ' ', '\n']);
         if !done || first.starts_with("null") {
-            let said = stderr(&output);
-            faults.push(format!("{} {command}: {code:?} {said}", model.name));
+            let message = stderr(&output);
+            faults.push(format!("{} {command}: {code:?} {message}", model.name));
         }
     }
     faults

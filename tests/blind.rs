@@ -24,10 +24,10 @@ const RESTS: f64 = 0.02;
 
 /// A state of a robot: angles, rates, accelerations.
 fn state(k: usize) -> [[f64; MAX_DOF]; 3] {
-    let of = |offset: f64, size: f64| {
+    let wave = |offset: f64, size: f64| {
         std::array::from_fn(|joint| size * (offset + 1.7 * k as f64 + 2.3 * joint as f64).sin())
     };
-    [of(0.0, 1.5), of(1.0, 2.0), of(2.0, 9.0)]
+    [wave(0.0, 1.5), wave(1.0, 2.0), wave(2.0, 9.0)]
 }
 
 fn same_torques(model: &Model) {
@@ -230,7 +230,7 @@ fn label(case: &str, kind: Kind, ids: &[&str]) -> Label {
     }
 }
 
-fn said(id: &str, joints: &[usize], class: &[&str], offset: f64) -> Value {
+fn asserted(id: &str, joints: &[usize], class: &[&str], offset: f64) -> Value {
     serde_json::json!({"id": id, "joints": joints, "class": class, "probability": 0.97,
         "parameters": {"offset": {"value": offset, "sd": 0.1, "unit": "Nm"}}})
 }
@@ -244,7 +244,7 @@ fn diagnosis(verdict: &str, effects: &[Value]) -> Value {
 /// Labels and diagnoses with manually counted grades.
 fn manually_graded() -> (Vec<Label>, Vec<Value>) {
     let offset =
-        |joints: &[usize], class: &[&str], value| said("torque_offset", joints, class, value);
+        |joints: &[usize], class: &[&str], value| asserted("torque_offset", joints, class, value);
     vec![
         (label("a", Kind::Healthy, &[]), diagnosis("no_gap", &[])),
         (label("b", Kind::Healthy, &[]), diagnosis("effect", &[offset(&[1], &[], 1.0)])),
@@ -252,17 +252,17 @@ fn manually_graded() -> (Vec<Label>, Vec<Value>) {
         (label("d", Kind::One, &["torque_offset"]), diagnosis("effect", &[offset(&[2], &[], 1.2)])),
         (
             label("e", Kind::One, &["torque_offset"]),
-            diagnosis("effect", &[said("cable", &[3], &["cable", "torque_offset"], 1.0)]),
+            diagnosis("effect", &[asserted("cable", &[3], &["cable", "torque_offset"], 1.0)]),
         ),
         (
             label("f", Kind::One, &["torque_offset"]),
-            diagnosis("effect", &[said("cable", &[2], &["cable"], 1.0)]),
+            diagnosis("effect", &[asserted("cable", &[2], &["cable"], 1.0)]),
         ),
         (label("g", Kind::One, &["torque_offset"]), diagnosis("unknown", &[])),
         (label("h", Kind::One, &["torque_offset"]), diagnosis("effect", &[offset(&[2], &[], 1.4)])),
         (
             label("i", Kind::Two, &["torque_offset", "cable"]),
-            diagnosis("effect", &[offset(&[2], &[], 1.0), said("cable", &[2], &[], 1.0)]),
+            diagnosis("effect", &[offset(&[2], &[], 1.0), asserted("cable", &[2], &[], 1.0)]),
         ),
         (
             label("j", Kind::Two, &["torque_offset", "cable"]),
@@ -427,8 +427,8 @@ fn leaving_out_a_family_removes_all_its_effects() {
     let kept: Value = serde_json::from_str(&fs::read_to_string(kept).unwrap()).unwrap();
     let all =
         kept["effects"].as_array().unwrap().iter().chain(kept["candidates"].as_array().unwrap());
-    for said in all {
-        let id = said["id"].as_str().unwrap();
+    for effect in all {
+        let id = effect["id"].as_str().unwrap();
         let of_family =
             ["wrist_coupling", "ripple", "backlash", "elasticity", "rotor_inertia", "brake_drag"];
         assert!(!of_family.contains(&id), "{id}");

@@ -11,15 +11,15 @@ use joulepath::arm::robot::prior::{Spread, standard_normals};
 use joulepath::arm::robot::{Model, find, from_toml, to_toml};
 use joulepath::learn::calibrate::{Refusal, calibrate};
 use joulepath::learn::log::{Channel, Log};
-use joulepath::rapid::text::{FileId, SourceFile};
 use joulepath::retime::energy::account;
 use joulepath::retime::energy::plausible::{DRAWS, Interval, plausibility};
 use joulepath::retime::energy::trajectory::{Sample, trajectory};
 use joulepath::retime::motion::timeline::{Event, What};
-use joulepath::retime::motion::{Options, Simulation, simulate};
+use joulepath::retime::motion::{Options, Simulation};
 use joulepath::tool::report::html::optimize_report;
-use joulepath::tool::retrofit::{Settings, Source, read_program, retrofit};
+use joulepath::tool::retrofit::{Settings, Source, retrofit};
 use rayon::prelude::*;
+use support::program as source;
 
 /// A program with another cycle.
 const OTHER: &str = "MODULE Other
@@ -45,18 +45,12 @@ const INSIDE: std::ops::RangeInclusive<usize> = 85..=95;
 /// Number of robots with their own energy in its interval.
 const POINTS: usize = 95;
 
-fn source(text: &str) -> Vec<Source> {
-    let file = SourceFile::new(FileId(0), "other.mod".to_owned(), text.as_bytes().to_vec());
-    vec![Source { relative: file.path.clone(), file }]
-}
-
 fn pick_place() -> Vec<Source> {
     support::modules("pick_place")
 }
 
 fn simulated(model: &Model, files: &[Source]) -> Simulation {
-    let (program, entry) = read_program(files, "main").unwrap();
-    simulate(&program, entry, model, &Options::default())
+    support::simulated(model, files, &Options::default())
 }
 
 fn robot(name: &str) -> Model {
@@ -187,7 +181,7 @@ fn calibrated_intervals_contain_the_truth_as_often_as_stated() {
 }
 
 /// Largest half width of the interval of the saving, relative to the saving.
-const OF_USE: f64 = 0.5;
+const USEFUL_WIDTH: f64 = 0.5;
 
 /// Least share of plausible robots without a larger joint torque in a run than in the original
 /// cycle, and tolerance of a peak between two instants.
@@ -248,13 +242,13 @@ fn a_calibrated_saving_has_a_narrow_interval_for_robots_of_all_sizes() {
             assert!(bound.is_none_or(|bound| bound <= after), "{name}: {bound:?} J, {after} J");
         }
         let page = optimize_report(&done, &files, &found.model, "main").unwrap();
-        for told in ["plausible robots it saves", "of the variance", "most would tell"] {
-            assert!(page.contains(told), "{name}: {told}");
+        for reported in ["plausible robots it saves", "of the variance", "most would tell"] {
+            assert!(page.contains(reported), "{name}: {reported}");
         }
         let Interval { median, low, high } = done.uncertainty.unwrap().saving_percent[1];
         assert!(needs_no_larger_torques(&found.model, &done.before.0, &done.after.0), "{name}");
         let width = 0.5 * (high - low);
-        assert!(width <= OF_USE * median && median > 0.0, "{name}: {median} {low} {high}");
+        assert!(width <= USEFUL_WIDTH * median && median > 0.0, "{name}: {median} {low} {high}");
     }
 }
 
@@ -287,8 +281,8 @@ fn logs_of_other_programs_and_robots_are_refused() {
         assert!(program, "{refusal}");
     }
     let large = robot("IRB6700-200/2.6");
-    let of_large = log(&large, &simulated(&large, &pick_place()), &METER);
-    assert!(calibrate(&model, &program, &of_large, None).is_err());
+    let large_log = log(&large, &simulated(&large, &pick_place()), &METER);
+    assert!(calibrate(&model, &program, &large_log, None).is_err());
     // The same motion with thirty times the power above that at rest.
     let own = log(&model, &program, &METER);
     let rest = own.values[1].iter().copied().fold(f64::INFINITY, f64::min);
@@ -304,15 +298,15 @@ fn logs_in_kilowatts_and_with_movement_or_cycle_numbers_are_read() {
     let program = simulated(&model, &pick_place());
     let plain = calibrate(&model, &program, &log(&model, &program, &METER), None).unwrap();
     let in_kw = log(&model, &program, &Recording { unit: 1e-3, ..METER });
-    let of_kw = calibrate(&model, &program, &in_kw, None).unwrap();
-    assert!(of_kw.found.kilowatts && !plain.found.kilowatts);
+    let in_kilowatts = calibrate(&model, &program, &in_kw, None).unwrap();
+    assert!(in_kilowatts.found.kilowatts && !plain.found.kilowatts);
     let width = |i: Interval| i.high - i.low;
     let before = width(plain.before.energy_j);
     let with_commands = log(&model, &program, &Recording { marks: Marks::Commands, ..METER });
-    let of_commands = calibrate(&model, &program, &with_commands, None).unwrap();
+    let by_commands = calibrate(&model, &program, &with_commands, None).unwrap();
     let with_cycles = log(&model, &program, &Recording { marks: Marks::Cycles, ..METER });
-    let of_cycles = calibrate(&model, &program, &with_cycles, None).unwrap();
-    for found in [&plain, &of_kw, &of_commands, &of_cycles] {
+    let by_cycles = calibrate(&model, &program, &with_cycles, None).unwrap();
+    for found in [&plain, &in_kilowatts, &by_commands, &by_cycles] {
         assert!(width(found.after.energy_j) < 0.1 * before, "{:?}", found.after.energy_j);
     }
 }
@@ -359,8 +353,9 @@ fn logged_torques_narrow_the_friction_more_than_power_alone() {
     let left = |torques: Option<&[Vec<f64>]>| -> Vec<f64> {
         let found = calibrate(&model, &program, &log, torques).unwrap();
         let friction = (1..=model.dof).map(|j| format!("friction of joint {j}"));
-        let of = |group: String| found.narrowed.iter().find(|(name, _)| *name == group).unwrap().1;
-        friction.map(of).collect()
+        let remaining =
+            |group: String| found.narrowed.iter().find(|(name, _)| *name == group).unwrap().1;
+        friction.map(remaining).collect()
     };
     let (alone, with) = (left(None), left(Some(&torques)));
     assert!(with.iter().zip(&alone).all(|(with, alone)| with < alone), "{with:?}, {alone:?}");

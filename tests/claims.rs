@@ -93,9 +93,12 @@ fn check_claims(case: &Case, id: &str) -> f64 {
     let [after, _] = residuals(&better, &held);
     let mut sums = [0.0; 2];
     for (joint, claim) in gap["per_joint"].as_array().unwrap().iter().enumerate() {
-        let of = |name: &str| claim[name].as_f64().unwrap();
-        let noise = of("noise");
-        let pairs = [(of("model"), before[joint]), (of("refit_plus_effect"), after[joint])];
+        let claimed_rms = |name: &str| claim[name].as_f64().unwrap();
+        let noise = claimed_rms("noise");
+        let pairs = [
+            (claimed_rms("model"), before[joint]),
+            (claimed_rms("refit_plus_effect"), after[joint]),
+        ];
         for (k, (claimed, rms)) in pairs.into_iter().enumerate() {
             let recomputed = (rms * rms - noise * noise).max(0.0).sqrt();
             let may = CLAIM_TOLERANCE * claimed + NOISE_TOLERANCE * noise;

@@ -83,17 +83,17 @@ fn the_json_has_the_fields_of_the_contract() {
 fn assert_shares_add_up(places: &Value) {
     let places = places.as_array().unwrap();
     let share = |place: &Value| place["share_percent"].as_f64().unwrap();
-    let of = |joint: u64, quantity: &str| -> Vec<&Value> {
+    let of_joint = |joint: u64, quantity: &str| -> Vec<&Value> {
         let is_of = |place: &&Value| {
             place["joint"] == joint && place["regime"].as_str().unwrap().starts_with(quantity)
         };
         places.iter().filter(is_of).collect()
     };
     for joint in 1..=6 {
-        let whole = of(joint, "all");
+        let whole = of_joint(joint, "all");
         assert_eq!(whole.len(), 1);
         for quantity in ["speed", "position", "load", "time"] {
-            let thirds = of(joint, quantity);
+            let thirds = of_joint(joint, quantity);
             assert_eq!(thirds.len(), 3, "joint {joint}, {quantity}");
             let sum: f64 = thirds.iter().map(|place| share(place)).sum();
             assert!((sum - share(whole[0])).abs() < 1e-6, "joint {joint}, {quantity}: {sum}");
@@ -158,8 +158,8 @@ fn a_wrong_period_is_reported_and_corrected() {
     let diagnosed = |period: &str| joulepath(&[&logs[..], &rest, &[period]].concat());
     let [right, wrong] = ["4", "2.9"].map(diagnosed);
     let message = stderr(&wrong);
-    let told = "--period 2.9: the motion repeats every 4.0000 s; that was used";
-    assert!(message.contains(told), "{message}");
+    let reported = "--period 2.9: the motion repeats every 4.0000 s; that was used";
+    assert!(message.contains(reported), "{message}");
     let missed = |output: &Output| -> f64 {
         parsed(output)["gap"][0]["per_joint"][1]["refit"].as_f64().unwrap()
     };

@@ -5,7 +5,7 @@
 
 mod arms;
 
-use arms::{ROBOTS, load, robots, states};
+use arms::{ROBOTS, largest, load, robots, states};
 use joulepath::arm::dynamics::{
     Data, Load, friction, gravity, kinetic_energy, potential_energy, rnea,
 };
@@ -62,7 +62,7 @@ proptest! {
             rate[joint] -= 2.0;
             (ahead - lagrangian(&at, &rate)) / 2.0
         };
-        let largest = tau.iter().fold(1.0, |m: f64, t| m.max(t.abs()));
+        let scale = largest(&tau);
         for joint in 0..model.dof {
             let momentum_rate = (momentum(H, joint) - momentum(-H, joint)) / (2.0 * H);
             let mut moved = q.clone();
@@ -72,7 +72,7 @@ proptest! {
             let slope = (ahead - lagrangian(&moved, &qd)) / (2.0 * H);
             let expected = momentum_rate - slope;
             prop_assert!(
-                (tau[joint] - expected).abs() < DIFFERENCES * largest,
+                (tau[joint] - expected).abs() < DIFFERENCES * scale,
                 "joint {joint}: {} {expected}", tau[joint]
             );
         }
@@ -94,11 +94,11 @@ proptest! {
             .collect();
         let bias = rnea(model, &mut data, &load(), &q, &qd, &[]);
         let tau = rnea(model, &mut data, &load(), &q, &qd, &qdd);
-        let largest = tau.iter().chain(&bias).fold(1.0, |m: f64, t| m.max(t.abs()));
+        let scale = largest(&tau).max(largest(&bias));
         let mut twice_kinetic = 0.0;
         for i in 0..model.dof {
             let row: Vec<f64> = columns.iter().map(|column| column[i]).collect();
-            prop_assert!((dot(&row, &qdd) + bias[i] - tau[i]).abs() < EXACT * largest);
+            prop_assert!((dot(&row, &qdd) + bias[i] - tau[i]).abs() < EXACT * scale);
             prop_assert!((0..model.dof).all(|j| (row[j] - columns[i][j]).abs() < EXACT * 100.0));
             twice_kinetic += qd[i] * dot(&row, &qd);
         }

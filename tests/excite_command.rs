@@ -166,8 +166,9 @@ fn impossible_numbers_are_refused_at_once() {
         ("--plane", "1,0,0,3"),
     ] {
         let out = folder.path().to_str().unwrap();
-        let said = refused(&["excite", "--robot", ROBOT, "--out", out, option, value], "error: ");
-        assert!(!said.contains("unexpected argument"), "{option} {value}: {said}");
+        let message =
+            refused(&["excite", "--robot", ROBOT, "--out", out, option, value], "error: ");
+        assert!(!message.contains("unexpected argument"), "{option} {value}: {message}");
         assert!(!folder.path().join("excitation.csv").exists());
     }
 }

@@ -49,8 +49,8 @@ fn rows() -> Vec<Vec<f64>> {
 }
 
 fn header() -> Vec<String> {
-    let of = |name: &str| (1..=6).map(|joint| format!("{name}{joint}")).collect::<Vec<_>>();
-    [vec!["t".into()], of("q"), of("qd"), of("qdd"), of("tau")].concat()
+    let columns = |name: &str| (1..=6).map(|joint| format!("{name}{joint}")).collect::<Vec<_>>();
+    [vec!["t".into()], columns("q"), columns("qd"), columns("qdd"), columns("tau")].concat()
 }
 
 struct Bench {
@@ -124,8 +124,8 @@ fn the_result_has_the_fields_of_the_contract_and_the_model_predicts() {
             sum += (predicted - row[19 + joint]).powi(2);
         }
         let rms = (sum / all.len() as f64).sqrt();
-        let told = found["rms"]["train"][joint].as_f64().unwrap();
-        assert!((rms / told - 1.0).abs() < 1e-6, "{rms} {told}");
+        let reported = found["rms"]["train"][joint].as_f64().unwrap();
+        assert!((rms / reported - 1.0).abs() < 1e-6, "{rms} {reported}");
     }
     assert_eq!(identified(&log, &[])["base_parameters"], found["base_parameters"]);
 }
@@ -144,7 +144,7 @@ fn repairs_of_a_log_are_reported() {
     broken[60][0] = "-1e200".into();
     broken[70][0] = "5000".into();
     let log = bench.write(&header(), &broken, ",");
-    let said = stderr(&identify(&log, &[]));
+    let message = stderr(&identify(&log, &[]));
     for text in [
         "row 12 left out: q3 is 'NaN'",
         "row 22",
@@ -154,13 +154,13 @@ fn repairs_of_a_log_are_reported() {
         "row 62 left out: t is -1e200 s",
         "row 72 left out: the time leaps",
     ] {
-        assert!(said.contains(text), "{text}: {said}");
+        assert!(message.contains(text), "{text}: {message}");
     }
     // A note reports rates of only some joints as unusable.
     let mut few = header();
     few[12] = "other".into();
-    let said = stderr(&identify(&bench.write(&few, &cells(&rows()), ","), &[]));
-    assert!(said.contains("no column qd6: qd1, qd2, qd3, qd4, qd5 not used"), "{said}");
+    let message = stderr(&identify(&bench.write(&few, &cells(&rows()), ","), &[]));
+    assert!(message.contains("no column qd6: qd1, qd2, qd3, qd4, qd5 not used"), "{message}");
     // Semicolons and decimal commas give the same result.
     let plain = bench.write(&header(), &cells(&rows()), ",");
     let expected = identify(&plain, &["-q"]).stdout;
@@ -313,12 +313,12 @@ fn the_descent_of_the_paper_is_close_to_the_unconstrained_fit() {
     let bench = Bench::new();
     let log = bench.write(&header(), &cells(&rows()), ",");
     let found = identified(&log, &["--method", "ordinary", "--descent"]);
-    let of = |list: &Value| -> Vec<f64> {
+    let numbers = |list: &Value| -> Vec<f64> {
         list.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
     };
     let total = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let free = total(&of(&found["unconstrained_rms"]["train"]));
-    let descent = total(&of(&found["descent"]["rms_by_joint"]));
+    let free = total(&numbers(&found["unconstrained_rms"]["train"]));
+    let descent = total(&numbers(&found["descent"]["rms_by_joint"]));
     assert!((1.0..1.1).contains(&(descent / free)), "{descent} {free}");
     let [first, last] = ["first_rms", "rms"].map(|key| found["descent"][key].as_f64().unwrap());
     assert!(last <= first, "{first} {last}");
@@ -355,8 +355,8 @@ fn torques_too_small_for_the_weight_are_graded_poor() {
     let log = bench.write(&header(), &cells(&all), ",");
     let [robot, log] = [&robot, &log].map(|path| path.to_str().unwrap());
     let output = joulepath(&["identify", "--robot", robot, "--log", log, "--format", "json"]);
-    let said = stderr(&output);
-    assert!(said.contains("multiply each tau by its ratio"), "{said}");
+    let message = stderr(&output);
+    assert!(message.contains("multiply each tau by its ratio"), "{message}");
     let found = parsed(&output);
     assert_eq!(found["quality"]["grade"], "poor", "{}", found["quality"]);
     assert!(found["quality"]["statement"].as_str().unwrap().contains("weight"));
@@ -407,9 +407,9 @@ fn options_that_do_not_fit_the_logs_are_reported() {
     let log = bench.write(&header(), &cells(&rows()), ",");
     let log = log.to_str().unwrap();
     let args = ["identify", "--robot", ROBOT, "--log", log, log];
-    let said = stderr(&run(&[&args[..], &["--validate", log, "--period", "3"]].concat()));
+    let message = stderr(&run(&[&args[..], &["--validate", log, "--period", "3"]].concat()));
     for text in ["it counts twice", "that the model was fitted to", "--period 3 is not used"] {
-        assert_eq!(said.matches(text).count(), 1, "{text}: {said}");
+        assert_eq!(message.matches(text).count(), 1, "{text}: {message}");
     }
     for (option, value, text) in [
         ("--date", "2026-02-29", "2026-11-30"),
@@ -434,12 +434,12 @@ fn a_short_delay_is_reported() {
             .map(|(old, new)| [&new[..19], &old[19..25]].concat())
             .collect();
         let found = identified(&bench.write(&header(), &cells(&late), ","), &[]);
-        let told = found["quality"]["torques_late_s"].as_f64();
+        let reported = found["quality"]["torques_late_s"].as_f64();
         if delay == 0 {
-            assert_eq!(told, None);
+            assert_eq!(reported, None);
             assert_eq!(found["quality"]["grade"], "good");
         } else {
-            assert!((least..most).contains(&told.unwrap()), "{told:?}");
+            assert!((least..most).contains(&reported.unwrap()), "{reported:?}");
             assert_eq!(found["quality"]["grade"], "fair");
         }
     }
@@ -470,8 +470,8 @@ fn the_validation_error_is_that_of_the_written_model() {
     }
     let log = bench.write(&header(), &cells(&all), ",");
     let found = identified(&log, &[]);
-    let of = |key: &str| found[key]["validation"][1].as_f64().unwrap();
-    assert!(of("rms") > 2.0 * of("unconstrained_rms"), "{found}");
+    let validation = |key: &str| found[key]["validation"][1].as_f64().unwrap();
+    assert!(validation("rms") > 2.0 * validation("unconstrained_rms"), "{found}");
 }
 
 #[test]
@@ -481,9 +481,9 @@ fn many_rejected_rows_are_summarised() {
     for row in broken.iter_mut().step_by(20) {
         row[3] = "NaN".into();
     }
-    let said = stderr(&identify(&bench.write(&header(), &broken, ","), &[]));
-    assert_eq!(said.matches("left out: q3").count(), 3, "{said}");
-    assert!(said.contains("17 more rows left out"), "{said}");
+    let message = stderr(&identify(&bench.write(&header(), &broken, ","), &[]));
+    assert_eq!(message.matches("left out: q3").count(), 3, "{message}");
+    assert!(message.contains("17 more rows left out"), "{message}");
 }
 
 #[test]

@@ -238,15 +238,16 @@ fn kept_paths_and_their_polygons_avoid_a_box() {
 fn free_paths_without_keep_out_zones_cause_a_warning() {
     let warning = |run: &Run| {
         let notes = run.result["notes"].as_array().unwrap().iter();
-        let mut told = notes.filter_map(Value::as_str).filter(|note| note.starts_with("warning: "));
-        told.next().map(str::to_owned)
+        let mut reported =
+            notes.filter_map(Value::as_str).filter(|note| note.starts_with("warning: "));
+        reported.next().map(str::to_owned)
     };
     let free = optimized("", &FREE);
-    let told = warning(&free).unwrap();
+    let reported = warning(&free).unwrap();
     let farthest = free.result["verification"]["max_path_deviation_m"].as_f64().unwrap();
     assert!(farthest > 0.02, "{farthest}");
-    assert!(told.contains(&format!("by up to {:.1} mm", 1e3 * farthest)), "{told}");
-    assert!(told.contains("no keep-out is configured"), "{told}");
+    assert!(reported.contains(&format!("by up to {:.1} mm", 1e3 * farthest)), "{reported}");
+    assert!(reported.contains("no keep-out is configured"), "{reported}");
     assert_eq!(warning(&optimized("", &[])), None);
     let known = "[[keep_out]]\nplane = [0, 0, 1, -1]\n";
     assert_eq!(warning(&optimized(known, &FREE)), None);

@@ -3,6 +3,9 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
+mod arms;
+
+use arms::{pose_distance, same_angles};
 use insta::assert_snapshot;
 use joulepath::arm::kinematics::{
     Conf, IkError, Tcp, conf_of, fk, ik_all, ik_conf, ik_near, jacobian, limits_ok,
@@ -35,15 +38,6 @@ fn tool() -> Isometry3<f64> {
     )
 }
 
-fn same_angle(a: f64, b: f64) -> bool {
-    let d = (a - b).rem_euclid(std::f64::consts::TAU);
-    d.min(std::f64::consts::TAU - d) < SAME_ANGLE
-}
-
-fn distance(a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
-    (a.translation.vector - b.translation.vector).norm().max(a.rotation.angle_to(&b.rotation))
-}
-
 /// Joint angles at shares 0 to 1 of the position ranges.
 fn inside(model: &Model, shares: [f64; 6]) -> [f64; 6] {
     std::array::from_fn(|i| {
@@ -66,9 +60,9 @@ proptest! {
         let pose = fk(model, &q);
         let all = ik_all(model, &pose).unwrap();
         for solution in &all {
-            prop_assert!(distance(&fk(model, solution), &pose) < SAME_POSE);
+            prop_assert!(pose_distance(&fk(model, solution), &pose) < SAME_POSE);
         }
-        let hit = all.iter().any(|s| s.iter().zip(&q).all(|(a, b)| same_angle(*a, *b)));
+        let hit = all.iter().any(|solution| same_angles(solution, &q, SAME_ANGLE));
         prop_assert!(hit, "{q:?} not in {all:?}");
     }
 
@@ -182,7 +176,7 @@ fn solutions_of_singular_poses_give_the_pose() {
         for model in robots() {
             let pose = fk(&model, &deg(degrees));
             for q in ik_all(&model, &pose).unwrap() {
-                assert!(distance(&fk(&model, &q), &pose) < 1e-7, "{}: {q:?}", model.name);
+                assert!(pose_distance(&fk(&model, &q), &pose) < 1e-7, "{}: {q:?}", model.name);
             }
         }
     }
@@ -218,7 +212,10 @@ fn angles_in_singularities_are_finite_for_every_robot() {
             let pose = fk(&model, &q);
             for found in ik_all(&model, &pose).unwrap_or_default() {
                 assert!(found.iter().all(|x| x.is_finite()), "{name} {q:?}: {found:?}");
-                assert!(distance(&fk(&model, &found), &pose) < 1e-6, "{name} {q:?}: {found:?}");
+                assert!(
+                    pose_distance(&fk(&model, &found), &pose) < 1e-6,
+                    "{name} {q:?}: {found:?}"
+                );
             }
             let near = ik_near(&model, &pose, &q);
             assert!(
@@ -252,7 +249,7 @@ fn a_wrist_singularity_keeps_joint_4() {
     let conf = Conf { cf1: 0, cf4: 1, cf6: 0, cfx: 0 };
     let found = ik_conf(&model, &fk(&model, &q), conf).unwrap();
     assert!((found[3].to_degrees() - 90.0).abs() < 1e-6, "{found:?}");
-    assert!(distance(&fk(&model, &found), &fk(&model, &q)) < 1e-8);
+    assert!(pose_distance(&fk(&model, &found), &fk(&model, &q)) < 1e-8);
 }
 
 #[test]
@@ -329,7 +326,7 @@ fn nearest_solution_follows_a_line_through_half_a_turn() {
             pose.rotation * turn,
         );
         let next = ik_near(&model, &goal, &q).unwrap();
-        assert!(distance(&fk(&model, &next), &goal) < SAME_POSE);
+        assert!(pose_distance(&fk(&model, &next), &goal) < SAME_POSE);
         assert!(next.iter().zip(&q).all(|(a, b)| (a - b).abs() < 0.05), "{next:?} {q:?}");
         q = next;
     }

@@ -135,9 +135,9 @@ fn read_only_files_are_kept_and_links_stay_links() {
         let output = joulepath_in(folder.path(), &[&["lint", name], &UNSAFE[..], &ROBOT].concat());
         (output.status.code(), stderr(&output))
     };
-    let (code, said) = fix("Cell.mod");
+    let (code, message) = fix("Cell.mod");
     assert_eq!(code, Some(2));
-    assert!(said.contains("Cell.mod' is read-only"), "{said}");
+    assert!(message.contains("Cell.mod' is read-only"), "{message}");
     assert_eq!(fs::read(&path).unwrap(), before);
     fs::set_permissions(&path, fs::Permissions::from_mode(0o644)).unwrap();
     let link = folder.path().join("Link.mod");
@@ -199,8 +199,8 @@ fn statistics_show_joules_only_with_a_robot() {
 #[test]
 fn the_reason_for_missing_joules_is_reported() {
     let folder = folder("EW102_stop_in_line.mod");
-    let said = |args: &[&str]| stderr(&joulepath_in(folder.path(), args));
-    let lint = |more: &[&str]| said(&[&["lint", "Cell.mod"], more].concat());
+    let messages = |args: &[&str]| stderr(&joulepath_in(folder.path(), args));
+    let lint = |more: &[&str]| messages(&[&["lint", "Cell.mod"], more].concat());
     assert!(lint(&[]).contains("nothing has joules: no robot is named"));
     let bare = "extends = \"IRB120-3/0.58\"\nname = \"another\"\n";
     fs::write(folder.path().join("bare.toml"), bare).unwrap();
@@ -209,7 +209,7 @@ fn the_reason_for_missing_joules_is_reported() {
     assert!(lint(&[&ROBOT[..], &["--entry", "nowhere"]].concat()).contains("--entry NAME"));
     assert_eq!(lint(&ROBOT), "");
     let locked = fs::canonicalize("fixtures/backup/RAPID/TASK2/PROGMOD/Locked.mod").unwrap();
-    assert!(said(&["lint", locked.to_str().unwrap()]).contains("is an encoded module"));
+    assert!(messages(&["lint", locked.to_str().unwrap()]).contains("is an encoded module"));
 }
 
 /// A backup with or without use of a signal for energy saving, and with or without a brake timeout.

@@ -102,14 +102,14 @@ fn columns_can_be_renamed() {
 
 #[test]
 fn wrong_maps_are_refused_with_the_reason() {
-    let of = |map: &str| -> LogError {
+    let refusal = |map: &str| -> LogError {
         match ColumnMap::parse(map) {
             Ok(map) => read(csv("Time,Axis,x", ",").as_bytes(), &map).unwrap_err(),
             Err(error) => error,
         }
     };
-    let messages =
-        ["q1", "q1=", "p1=Axis", "t=Time,t=x", "t=Tme", "q1=Axis"].map(|map| of(map).to_string());
+    let messages = ["q1", "q1=", "p1=Axis", "t=Time,t=x", "t=Tme", "q1=Axis"]
+        .map(|map| refusal(map).to_string());
     assert_snapshot!(messages.join("\n"));
 }
 

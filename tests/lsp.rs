@@ -104,10 +104,19 @@ impl Client {
 
     fn open(&mut self, path: &Path) -> String {
         let uri = format!("file://{}", path.display());
-        let text = fs::read_to_string(path).unwrap();
+        self.open_text(&uri, &fs::read_to_string(path).unwrap());
+        uri
+    }
+
+    fn open_text(&mut self, uri: &str, text: &str) {
         let document = json!({ "uri": uri, "languageId": "rapid", "version": 1, "text": text });
         self.notify("textDocument/didOpen", &json!({ "textDocument": document }));
-        uri
+    }
+
+    fn change(&mut self, uri: &str, change: &Value) {
+        let document = json!({ "uri": uri, "version": 2 });
+        let changes = json!({ "textDocument": document, "contentChanges": [change] });
+        self.notify("textDocument/didChange", &changes);
     }
 
     fn stop(mut self) {
@@ -115,6 +124,10 @@ impl Client {
         self.notify("exit", &Value::Null);
         assert!(self.process.wait().unwrap().success());
     }
+}
+
+fn codes(findings: &[Value]) -> Vec<&str> {
+    findings.iter().map(|finding| finding["code"].as_str().unwrap()).collect()
 }
 
 #[test]
@@ -128,10 +141,7 @@ fn an_open_document_gets_findings_hovers_and_fixes() {
     let mut client = Client::start(&json!({ "robot": "IRB1600-10/1.45" }));
 
     // The text of the editor has priority over the file.
-    let opened = json!({
-        "textDocument": { "uri": uri, "languageId": "rapid", "version": 1, "text": text }
-    });
-    client.notify("textDocument/didOpen", &opened);
+    client.open_text(&uri, &text);
     let found = client.next_findings();
     let tiny = found.iter().find(|it| it["code"] == "EW103").unwrap().clone();
     assert!(tiny["data"]["saving_j"].as_f64().unwrap() > 1.0, "{tiny}");
@@ -153,11 +163,7 @@ fn an_open_document_gets_findings_hovers_and_fixes() {
     assert_eq!(edit["newText"], "z50");
 
     // The fix as an incremental change removes all findings of that kind.
-    let change = json!({
-        "textDocument": { "uri": uri, "version": 2 },
-        "contentChanges": [{ "range": edit["range"], "text": edit["newText"] }]
-    });
-    client.notify("textDocument/didChange", &change);
+    client.change(&uri, &json!({ "range": edit["range"], "text": edit["newText"] }));
     assert!(client.next_findings().iter().all(|it| it["code"] != "EW103"));
     client.notify("textDocument/didClose", &json!({ "textDocument": document }));
     assert!(client.next_findings().is_empty());
@@ -172,10 +178,7 @@ fn a_document_is_linted_without_a_robot_and_a_folder() {
     let mut client = Client::start(&json!({ "robot": "no such robot" }));
     let uri = "file:///gone/M.mod";
     let text = "MODULE M\nPROC main()\n! joulepath: ignore EW999 no such rule\nWaitTime 1;\nMoveL";
-    let opened = json!({
-        "textDocument": { "uri": uri, "languageId": "rapid", "version": 1, "text": text }
-    });
-    client.notify("textDocument/didOpen", &opened);
+    client.open_text(uri, text);
     let (name, found) = client.next_diagnostics();
     assert_eq!(name, "M.mod");
     let [comment] = found.as_slice() else { panic!("{found:?}") };
@@ -220,9 +223,6 @@ fn a_change_updates_the_open_documents_of_its_program() {
     for (path, text) in &paths {
         fs::write(path, text).unwrap();
     }
-    let codes = |found: &[Value]| -> Vec<String> {
-        found.iter().map(|it| it["code"].as_str().unwrap().to_owned()).collect()
-    };
     let mut client = Client::start(&json!({}));
     client.open(&paths[0].0);
     assert_eq!(client.next_diagnostics().0, "Work.mod");
@@ -233,15 +233,11 @@ fn a_change_updates_the_open_documents_of_its_program() {
     names.sort();
     assert_eq!(names, ["Cell.mod", "Work.mod"]);
     // Without its call the procedure is dead, which is reported in the other document.
-    let change = json!({
-        "textDocument": { "uri": cell, "version": 2 },
-        "contentChanges": [{ "text": paths[1].1.replace("rWork;\n", "") }],
-    });
-    client.notify("textDocument/didChange", &change);
-    let told: std::collections::BTreeMap<String, Vec<Value>> =
+    client.change(&cell, &json!({ "text": paths[1].1.replace("rWork;\n", "") }));
+    let reported: std::collections::BTreeMap<String, Vec<Value>> =
         [client.next_diagnostics(), client.next_diagnostics()].into_iter().collect();
-    assert_eq!(codes(&told["Work.mod"]), ["EW702"]);
-    assert!(told["Cell.mod"].is_empty());
+    assert_eq!(codes(&reported["Work.mod"]), ["EW702"]);
+    assert!(reported["Cell.mod"].is_empty());
     client.stop();
 }
 
@@ -261,27 +257,21 @@ fn closing_a_document_updates_the_other_documents() {
     for (path, text) in paths.iter().zip([data.as_str(), work, cell]) {
         fs::write(path, text).unwrap();
     }
-    let codes = |found: &[Value]| -> Vec<String> {
-        found.iter().map(|it| it["code"].as_str().unwrap().to_owned()).collect()
-    };
     let mut client = Client::start(&json!({ "robot": "IRB1600-10/1.45" }));
     let work = client.open(&paths[1]);
     assert_eq!(codes(&client.next_diagnostics().1), ["EW101"]);
     let cell = client.open(&paths[2]);
     client.next_diagnostics();
     client.next_diagnostics();
-    let change = json!({
-        "textDocument": { "uri": cell, "version": 2 },
-        "contentChanges": [{ "text": "MODULE Cell\nPROC main()\nrStay;\nENDPROC\nENDMODULE\n" }],
-    });
-    client.notify("textDocument/didChange", &change);
-    let told = [client.next_diagnostics(), client.next_diagnostics()];
-    let of_work = told.iter().find(|(name, _)| name == "Work.mod").unwrap();
-    assert!(codes(&of_work.1).contains(&"EW702".to_owned()), "{told:?}");
+    let text = "MODULE Cell\nPROC main()\nrStay;\nENDPROC\nENDMODULE\n";
+    client.change(&cell, &json!({ "text": text }));
+    let reported = [client.next_diagnostics(), client.next_diagnostics()];
+    let work_findings = reported.iter().find(|(name, _)| name == "Work.mod").unwrap();
+    assert!(codes(&work_findings.1).contains(&"EW702"), "{reported:?}");
     client.notify("textDocument/didClose", &json!({ "textDocument": { "uri": cell } }));
     assert_eq!(client.next_diagnostics(), ("Cell.mod".to_owned(), Vec::new()));
     let (name, found) = client.next_diagnostics();
-    assert_eq!((name.as_str(), codes(&found)), ("Work.mod", vec!["EW101".to_owned()]));
+    assert_eq!((name.as_str(), codes(&found)), ("Work.mod", vec!["EW101"]));
 
     let document = json!({ "uri": work });
     let place = json!({ "line": 3, "character": 6 });

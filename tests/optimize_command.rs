@@ -335,8 +335,8 @@ fn movements_with_inline_targets_are_kept() {
         [(own, &[][..], true), (own, &["--inline-targets"], false), (named, &[], false)]
     {
         let (_folder, path) = module(program("", statement));
-        let told = stdout(&joulepath(&[&["optimize", &path], args, &ROBOT[..]].concat()));
-        assert_eq!(told.contains("inline-target: "), stays, "{told}");
+        let reported = stdout(&joulepath(&[&["optimize", &path], args, &ROBOT[..]].concat()));
+        assert_eq!(reported.contains("inline-target: "), stays, "{reported}");
     }
 }
 
@@ -346,8 +346,8 @@ fn the_original_runs_where_a_name_has_another_value() {
     let (folder, path) = module(program("", "MoveAbsJ jA,v1000,fine,tP;"));
     let out = folder.path().join("out");
     let options = ["optimize", &path, "--out", out.to_str().unwrap()];
-    let (told, code) = said(folder.path(), &options);
-    assert_eq!(code, Some(0), "{told}");
+    let (reported, code) = said(folder.path(), &options);
+    assert_eq!(code, Some(0), "{reported}");
     let paths = ["m.mod", "Joulepath.mod"].map(|name| out.join(name));
     let written = paths.each_ref().map(|file| fs::read_to_string(file).unwrap());
     let time = || {
@@ -606,8 +606,8 @@ fn a_path_through_two_routines_does_not_prevent_other_streams() {
     let calls = "rGo;\nrGo;\nMoveAbsJ jA,v500,fine,tP;\nMoveAbsJ jB,v500,fine,tP;\n\
                  MoveAbsJ jA,v500,fine,tP;";
     let streams = streams(helper, calls);
-    let of = |line: u64| streams.iter().find(|(first, _)| *first == line).unwrap().1;
-    assert!(of(14) && of(15) && of(16), "{streams:?}");
+    let is_stream = |line: u64| streams.iter().find(|(first, _)| *first == line).unwrap().1;
+    assert!(is_stream(14) && is_stream(15) && is_stream(16), "{streams:?}");
 }
 
 #[test]

@@ -12,8 +12,7 @@ use joulepath::retime::energy::change::Changes;
 use joulepath::retime::energy::plausible::{DRAWS, Robots, moments, plausibility};
 use joulepath::retime::energy::power::holding_w;
 use joulepath::retime::energy::{Account, EnergyParts, account};
-use joulepath::retime::motion::{Options, Simulation, simulate};
-use joulepath::tool::retrofit::read_program;
+use joulepath::retime::motion::{Options, Simulation};
 
 /// Number of compared robots.
 const ROBOTS: usize = 12;
@@ -30,8 +29,7 @@ const FAR: [f64; 3] = [0.5, 0.75, 0.6];
 
 fn simulated(model: &Model) -> (Simulation, Account) {
     let files = support::modules("pick_place");
-    let (program, entry) = read_program(&files, "main").unwrap();
-    let simulation = simulate(&program, entry, model, &Options::default());
+    let simulation = support::simulated(model, &files, &Options::default());
     let account = account(model, &simulation);
     (simulation, account)
 }
@@ -213,8 +211,8 @@ fn stated_standard_deviations_are_used_and_absurd_ones_refused() {
     };
     let [exact, stated] = ["base_w_sd = 2\n", ""].map(|lines| width(&with(lines).unwrap()));
     assert!(exact < 0.9 * stated, "{exact} J, {stated} J");
-    let said = with("base_w_sd = 2500\n").unwrap_err().to_string();
-    assert!(said.contains("base power"), "{said}");
+    let message = with("base_w_sd = 2500\n").unwrap_err().to_string();
+    assert!(message.contains("base power"), "{message}");
 }
 
 #[test]
@@ -227,8 +225,8 @@ fn impossible_masses_are_refused_by_name() {
         with_estimates(model).map_err(|error| error.to_string())
     };
     for mass in ["-250.0", "0.0", "2.5", "19000.0", "1e6"] {
-        let said = with_mass(mass).unwrap_err();
-        assert!(said.contains("mass") && said.contains("kg"), "{mass}: {said}");
+        let message = with_mass(mass).unwrap_err();
+        assert!(message.contains("mass") && message.contains("kg"), "{mass}: {message}");
     }
     for factor in [0.0, 1000.0] {
         let mut model = with_estimates(find("IRB2600-20/1.65").unwrap()).unwrap();
@@ -237,15 +235,15 @@ fn impossible_masses_are_refused_by_name() {
             link.inertia *= factor;
         });
         let read = from_toml("arm.toml", &to_toml(&model));
-        let said = read.and_then(with_estimates).unwrap_err().to_string();
-        assert!(said.contains("[[link]] mass"), "{said}");
+        let message = read.and_then(with_estimates).unwrap_err().to_string();
+        assert!(message.contains("[[link]] mass"), "{message}");
     }
     let stated = with_mass("280.0").unwrap();
     let unknown = with_estimates(from_toml("arm.toml", &text).unwrap()).unwrap();
-    let of = |model: &Model| {
+    let width = |model: &Model| {
         let (simulation, own) = simulated(model);
         let all = plausibility(model, &simulation, &own).unwrap().motion_energy_j;
         (all.high / all.low).ln()
     };
-    assert!(of(&unknown) > of(&stated), "{} {}", of(&unknown), of(&stated));
+    assert!(width(&unknown) > width(&stated), "{} {}", width(&unknown), width(&stated));
 }

@@ -381,8 +381,8 @@ fn emitted_streams_keep_limits_paths_and_predicted_energies() {
         let segments = result["segments"].as_array().unwrap();
         let mut stands: Option<[f64; 6]> = None;
         for stream in &streams {
-            let of = |s: &&Value| s["line_first"] == stream.line && s["kind"] == "timing";
-            let segment = segments.iter().find(of).unwrap();
+            let is_timing = |s: &&Value| s["line_first"] == stream.line && s["kind"] == "timing";
+            let segment = segments.iter().find(is_timing).unwrap();
             assert_eq!(segment["points"].as_u64().unwrap() as usize, stream.points.len());
             // Each stream starts at the end of the previous one.
             if let Some(stands) = stands {

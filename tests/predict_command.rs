@@ -173,11 +173,13 @@ fn predicted_torques_contain_sensor_effects() {
         let text = format!("extends = \"{}\"\nname = \"x\"\n{effects}", seven.display());
         written(&folder, "robot.toml", &text)
     };
-    let of = |effects: &str| stdout(&predict(&overlay(effects), &motion, &["-q"]));
-    let plain = of("");
-    let changed = of("[effects.torque_offset]\noffset_j2 = 1.5\n\
-                      [effects.torque_constant]\nerror_j3 = 0.1\n");
-    let moved = of("[effects.encoder_offset]\noffset_j2 = 0.01\n");
+    let predicted = |effects: &str| stdout(&predict(&overlay(effects), &motion, &["-q"]));
+    let plain = predicted("");
+    let changed = predicted(
+        "[effects.torque_offset]\noffset_j2 = 1.5\n\
+                      [effects.torque_constant]\nerror_j3 = 0.1\n",
+    );
+    let moved = predicted("[effects.encoder_offset]\noffset_j2 = 0.01\n");
     assert_ne!(plain, moved);
     let ((_, before), (_, after)) = (table(&plain), table(&changed));
     for (before, after) in before.iter().zip(&after) {

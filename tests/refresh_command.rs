@@ -144,6 +144,6 @@ fn a_program_without_streams_is_refused() {
     assert_eq!(files(&cell), before);
     // A program with streams does not get streams again.
     done(&["optimize", "--in-place"], &cell);
-    let said = done(&["optimize", "--format", "json"], &cell);
-    assert!(said.contains("joulepath refresh"), "{said}");
+    let result = done(&["optimize", "--format", "json"], &cell);
+    assert!(result.contains("joulepath refresh"), "{result}");
 }

@@ -1,31 +1,25 @@
 //! The HTML report of a retrofit.
 #![expect(clippy::unwrap_used, reason = "a failed set-up fails the test")]
 
+mod support;
+
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::sync::LazyLock;
 
-use joulepath::arm::robot::{self, Model};
+use joulepath::arm::robot::Model;
 use joulepath::rapid::text::{FileId, SourceFile, Span};
 use joulepath::retime::energy::{Account, EnergyParts, account};
 use joulepath::retime::motion::timeline::What;
-use joulepath::retime::motion::{Options, Simulation, simulate};
+use joulepath::retime::motion::{Options, Simulation};
 use joulepath::retime::optimize::check::Check;
 use joulepath::retime::optimize::reason::Reason;
 use joulepath::tool::report::html::optimize_report;
 use joulepath::tool::retrofit::{
     Figures, OutputFile, OutputKind, Retrofit, Segment, SegmentKind, Settings, SignalKind,
-    SignalShift, Source, Verification, read_program, retrofit,
+    SignalShift, Source, Verification, retrofit,
 };
-
-fn source(index: u32, path: &str, bytes: Vec<u8>) -> Source {
-    let file = SourceFile::new(FileId(index), path.to_owned(), bytes);
-    Source { file, relative: path.to_owned() }
-}
-
-fn irb1600() -> Model {
-    robot::find("IRB1600-10/1.45").unwrap()
-}
+use support::{irb1600, modules, program, simulated, sources};
 
 /// The retrofit of a whole cell, with its page.
 struct Cell {
@@ -36,18 +30,7 @@ struct Cell {
 }
 
 static CELL: LazyLock<Cell> = LazyLock::new(|| {
-    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/pick_place");
-    let mut paths: Vec<_> =
-        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    paths.sort();
-    let files: Vec<Source> = paths
-        .iter()
-        .enumerate()
-        .map(|(i, path)| {
-            let name = path.file_name().unwrap().to_str().unwrap();
-            source(i as u32, name, std::fs::read(path).unwrap())
-        })
-        .collect();
+    let files = modules("pick_place");
     let model = irb1600();
     let settings = Settings::default();
     let retrofit = retrofit(&files, &model, &settings, &|_, _| ()).unwrap();
@@ -91,9 +74,7 @@ ENDMODULE
 const SPACING: f64 = 0.1;
 
 fn run(model: &Model, text: &str) -> (Simulation, Account) {
-    let files = [source(0, "Cell.mod", text.into())];
-    let (program, entry) = read_program(&files, "main").unwrap();
-    let simulation = simulate(&program, entry, model, &Options::default());
+    let simulation = simulated(model, &program(text), &Options::default());
     let account = account(model, &simulation);
     (simulation, account)
 }
@@ -203,7 +184,8 @@ fn small(path: &str) -> Small {
         before,
         after,
     };
-    Small { files: vec![source(0, path, text.into_bytes())], model, retrofit }
+    let file = SourceFile::new(FileId(0), path.to_owned(), text.into_bytes());
+    Small { files: sources(vec![file]), model, retrofit }
 }
 
 fn small_page(path: &str) -> String {

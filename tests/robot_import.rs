@@ -452,11 +452,11 @@ fn every_known_robot_passes_the_check() {
     assert!(found["passed"].as_u64().unwrap() >= 60);
     let all = found["robots"].as_array().unwrap();
     assert!(all.iter().all(|robot| robot["sound"] == true));
-    let of = |name: &str| all.iter().find(|robot| robot["name"] == name).unwrap();
-    assert_eq!(of("IRB1600-10/1.45")["lacks"]["optimize"], serde_json::json!([]));
+    let entry = |name: &str| all.iter().find(|robot| robot["name"] == name).unwrap();
+    assert_eq!(entry("IRB1600-10/1.45")["lacks"]["optimize"], serde_json::json!([]));
     // Missing data are estimated; RAPID has six axes.
-    assert_eq!(of("IRB52-7/1.2")["lacks"]["optimize"], serde_json::json!([]));
-    let lacks = &of("IRB14000 left")["lacks"]["simulate"];
+    assert_eq!(entry("IRB52-7/1.2")["lacks"]["optimize"], serde_json::json!([]));
+    let lacks = &entry("IRB14000 left")["lacks"]["simulate"];
     assert!(!lacks.as_array().unwrap().is_empty(), "{lacks}");
 }
 

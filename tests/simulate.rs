@@ -2,17 +2,18 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed set-up fails the test")]
 
+mod support;
+
 use std::collections::BTreeMap;
 
 use joulepath::arm::dynamics::{Data, kinetic_energy, potential_energy, torque};
 use joulepath::arm::robot::{Model, find};
-use joulepath::rapid::text::{FileId, SourceFile};
 use joulepath::retime::energy::account;
 use joulepath::retime::motion::timed::TimedMotion;
 use joulepath::retime::motion::timeline::{Run, What};
-use joulepath::retime::motion::{Options, Simulation, simulate};
+use joulepath::retime::motion::{Options, Simulation};
 use joulepath::retime::path::PieceKind;
-use joulepath::tool::retrofit::{Source, read_program};
+use support::{irb1600, program};
 
 /// A home position and targets in front of an IRB1600, with the tool pointing down.
 const DATA: &str = "CONST jointtarget home:=[[0,0,0,0,60,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
@@ -26,18 +27,11 @@ VAR num endless:=1;
 VAR bool late:=FALSE;
 ";
 
-fn irb1600() -> Model {
-    find("IRB1600-10/1.45").unwrap()
-}
-
 fn run_with(model: &Model, body: &str, options: &Options) -> Simulation {
     let text = format!(
         "MODULE M\n{DATA}PROC main()\nConfL\\Off;\nConfJ\\Off;\n{body}\nENDPROC\nENDMODULE"
     );
-    let file = SourceFile::new(FileId(0), "M.mod".into(), text.into_bytes());
-    let files = [Source { file, relative: "M.mod".into() }];
-    let (program, entry) = read_program(&files, "main").unwrap();
-    simulate(&program, entry, model, options)
+    support::simulated(model, &program(text), options)
 }
 
 fn simulated(body: &str) -> Simulation {
@@ -260,8 +254,8 @@ fn energy_is_balanced_in_every_move() {
                 let mut power = |t: f64| {
                     let s = run.at(t);
                     let tau = torque(&model, &mut data, &run.load, &s.q, &s.qd, &s.qdd);
-                    let of = |t: &[f64]| s.qd.iter().zip(t).map(|(v, t)| v * t).sum::<f64>();
-                    [of(&tau.rigid), of(&tau.friction)]
+                    let power_of = |t: &[f64]| s.qd.iter().zip(t).map(|(v, t)| v * t).sum::<f64>();
+                    [power_of(&tau.rigid), power_of(&tau.friction)]
                 };
                 let steps = ((to - from) / 1e-4).ceil().max(1.0) as usize;
                 let h = (to - from) / steps as f64;
@@ -406,8 +400,8 @@ fn endless_fly_by_motion_is_stopped_at_the_time_limit() {
         let simulation = run_with(&irb1600(), &body, &options);
         let cycle = simulation.cycle_s;
         assert!((20.0..20.0 + ONE_MOVE).contains(&cycle), "{cycle}");
-        let told: Vec<&str> = reasons(&simulation);
-        assert!(told.iter().any(|r| r.contains("--max-time")), "{told:?}");
+        let reported: Vec<&str> = reasons(&simulation);
+        assert!(reported.iter().any(|r| r.contains("--max-time")), "{reported:?}");
         let moves: usize = runs(&simulation).iter().map(|run| run.moves.len()).sum();
         assert!((20..60).contains(&moves), "{moves}");
         let last = runs(&simulation).last().unwrap().at(cycle);
@@ -479,13 +473,16 @@ fn other_branches_of_a_test_on_an_input_are_reported() {
                 CASE 3,4:\nMoveL c,v500,fine,tool0;\nMoveL b,v500,fine,tool0;\nENDTEST";
     let zero = simulated(body);
     assert_eq!(runs(&zero).len(), 1);
-    let told = reasons(&zero).join("\n");
-    assert!(told.contains("2 other branches (3 instructions)"), "{told}");
-    assert!(told.contains("--assume giPart"), "{told}");
+    let reported = reasons(&zero).join("\n");
+    assert!(reported.contains("2 other branches (3 instructions)"), "{reported}");
+    assert!(reported.contains("--assume giPart"), "{reported}");
     // Also through a variable.
     let body_of = |value: &str| body.replace("TEST giPart", &format!("n:={value};\nTEST n"));
-    let told = reasons(&simulated(&body_of("giPart+0"))).join("\n");
-    assert!(told.contains("2 other branches") && told.contains("--assume giPart"), "{told}");
+    let reported = reasons(&simulated(&body_of("giPart+0"))).join("\n");
+    assert!(
+        reported.contains("2 other branches") && reported.contains("--assume giPart"),
+        "{reported}"
+    );
     assert!(reasons(&simulated(&body_of("0"))).is_empty());
     let levels = BTreeMap::from([("gipart".to_owned(), 3.0)]);
     let three = run_with(&irb1600(), body, &Options { levels, ..Options::default() });
@@ -512,8 +509,11 @@ fn loops_that_poll_an_input_are_waits_for_it() {
         let unknown = simulated(&body);
         assert_eq!(runs(&unknown).len(), 1, "{poll}: {:?}", reasons(&unknown));
         assert!(waits(&unknown).len() <= 3, "{poll}: {:?}", waits(&unknown));
-        let told = reasons(&unknown);
-        assert!(told.iter().any(|r| r.contains("--input diPart=SECONDS")), "{poll}: {told:?}");
+        let reported = reasons(&unknown);
+        assert!(
+            reported.iter().any(|r| r.contains("--input diPart=SECONDS")),
+            "{poll}: {reported:?}"
+        );
         let known = with_input(&body, 5.0);
         let sum: f64 = waits(&known).iter().sum();
         // The pass that detects the input may add its duration.
@@ -539,9 +539,9 @@ fn loops_move_until_their_input_is_set() {
     ] {
         let body = format!("MoveJ a,v1000,fine,tool0;\n{body}\nWaitTime 1;");
         let unknown = simulated(&body);
-        let told = reasons(&unknown);
-        assert_eq!(runs(&unknown).len(), 2, "{told:?}");
-        assert!(told.iter().any(|r| r.contains("the first pass")), "{told:?}");
+        let reported = reasons(&unknown);
+        assert_eq!(runs(&unknown).len(), 2, "{reported:?}");
+        assert!(reported.iter().any(|r| r.contains("the first pass")), "{reported:?}");
         assert_eq!(waits(&unknown), [1.0]);
         let known = with_input(&body, 10.0);
         let cycle = known.cycle_s - 1.0;
@@ -564,8 +564,8 @@ fn refused_or_unsimulated_settings_are_reported() {
     ] {
         let body = format!("MoveJ a,v1000,fine,tool0;\n{setting};\nMoveL b,v500,fine,tool0;");
         let simulation = simulated(&body);
-        let told = reasons(&simulation);
-        assert!(told.len() == 1 && told[0].contains(what), "{setting}: {told:?}");
+        let reported = reasons(&simulation);
+        assert!(reported.len() == 1 && reported[0].contains(what), "{setting}: {reported:?}");
         assert_eq!(runs(&simulation).len(), 2);
     }
     assert!(reasons(&simulated("CirPathMode\\PathFrame;\nSoftDeact;")).is_empty());
@@ -635,6 +635,6 @@ fn arrays_larger_than_memory_are_not_allocated() {
     let body = "VAR num all{10000,10000,10000};\nall{1,1,1}:=1;\nMoveJ a,v1000,fine,tool0;\n\
                 MoveJ b,[all{1,1,2}+100,500,5000,1000],fine,tool0;";
     let simulation = simulated(body);
-    let told = reasons(&simulation);
-    assert!(told.iter().any(|reason| reason.contains("too large")), "{told:?}");
+    let reported = reasons(&simulation);
+    assert!(reported.iter().any(|reason| reason.contains("too large")), "{reported:?}");
 }

@@ -2,13 +2,14 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
+mod arms;
 mod command;
 
 use std::fs;
 
 use command::{IRB1600, joulepath, module, run, stderr, stdout};
 use joulepath::arm::kinematics::{Tcp, fk, jacobian};
-use joulepath::arm::robot::{Model, find, from_toml};
+use joulepath::arm::robot::{Model, find};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 
@@ -27,10 +28,10 @@ fn stationary() -> Isometry3<f64> {
     )
 }
 
+/// A serial arm, and one with rods.
 fn robots() -> [Model; 2] {
-    let rods = "extends = \"IRB1600-10/1.45\"\nname = \"rods\"\n\
-                [kinematics]\ncoupling = \"parallelogram\"\n";
-    [find("IRB1600-10/1.45").unwrap(), from_toml("rods.toml", rods).unwrap()]
+    let [serial, _, rods, ..] = arms::robots();
+    [serial, rods]
 }
 
 fn difference(a: &Isometry3<f64>, b: &Isometry3<f64>) -> [Vector3<f64>; 2] {
@@ -99,8 +100,8 @@ fn the_workpiece_moves_along_the_line() {
     let (folder, program) = module(GLUE);
     let motion = folder.path().join("motion.csv");
     let args = ["simulate", &program, "--robot", IRB1600, "--start", "0,0,0,0,30,0"];
-    let said = stderr(&run(&[&args[..], &["--trajectory", motion.to_str().unwrap()]].concat()));
-    assert!(!said.contains("not simulated"), "{said}");
+    let message = stderr(&run(&[&args[..], &["--trajectory", motion.to_str().unwrap()]].concat()));
+    assert!(!message.contains("not simulated"), "{message}");
 
     let model = find("IRB1600-10/1.45").unwrap();
     let tool = Isometry3::translation(0.9, 0.1, 0.7);
@@ -138,6 +139,6 @@ fn the_workpiece_moves_along_the_line() {
 fn a_robot_that_holds_neither_tool_nor_work_object_is_reported() {
     let (_folder, program) = module(GLUE.replace("[TRUE,TRUE", "[FALSE,TRUE"));
     let output = joulepath(&["simulate", &program, "--robot", IRB1600]);
-    let said = stdout(&output) + &stderr(&output);
-    assert!(said.contains("the robot holds neither"), "{said}");
+    let message = stdout(&output) + &stderr(&output);
+    assert!(message.contains("the robot holds neither"), "{message}");
 }

@@ -236,20 +236,20 @@ fn unusable_input_is_refused_with_the_way_out() {
     let folder = test_program();
     let log = folder.path().join("streamtest.csv");
     let log = log.to_str().unwrap();
-    let told = |args: &[&str], words: &str| {
+    let is_refused = |args: &[&str], words: &str| {
         refused(&[&["streamtest"], args].concat(), words);
     };
-    told(&["--robot", ROBOT], "--out");
-    told(&["--robot", ROBOT, "--log", log, "--start", "20,0,0,0,30,0"], "--start");
-    told(&["--robot", ROBOT, "--out", "x", "--start", "0,0,0,0,300,0"], "--start");
-    told(&["--robot", ROBOT, "--log", "nowhere.csv"], "nowhere.csv");
+    is_refused(&["--robot", ROBOT], "--out");
+    is_refused(&["--robot", ROBOT, "--log", log, "--start", "20,0,0,0,30,0"], "--start");
+    is_refused(&["--robot", ROBOT, "--out", "x", "--start", "0,0,0,0,300,0"], "--start");
+    is_refused(&["--robot", ROBOT, "--log", "nowhere.csv"], "nowhere.csv");
     // A test below the resolution of a log would pass with any controller.
-    told(&["--robot", ROBOT, "--out", "x", "--start", "179.5,0,0,0,30,0"], "another --start");
+    is_refused(&["--robot", ROBOT, "--out", "x", "--start", "179.5,0,0,0,30,0"], "another --start");
     let text = fs::read_to_string(log).unwrap();
     let sparse: Vec<&str> = text.lines().step_by(10).collect();
     fs::write(log, sparse.join("\n")).unwrap();
-    told(&["--robot", ROBOT, "--log", log], "0.02 s apart");
+    is_refused(&["--robot", ROBOT, "--log", log], "0.02 s apart");
     let text = text.replace("cmd", "remark");
     fs::write(log, text).unwrap();
-    told(&["--robot", ROBOT, "--log", log], "cmd");
+    is_refused(&["--robot", ROBOT, "--log", log], "cmd");
 }

@@ -1,21 +1,17 @@
 //! Movements with `\T`, the limiting quantity of a movement, and lines near singularities.
 #![expect(clippy::unwrap_used, reason = "a failed set-up fails the test")]
 
+mod support;
+
 use std::fmt::Write;
 
 use joulepath::arm::dynamics::{Data, torque};
 use joulepath::arm::kinematics::fk;
-use joulepath::arm::robot::{Model, find};
-use joulepath::rapid::text::{FileId, SourceFile};
 use joulepath::retime::motion::timeline::{Run, What};
-use joulepath::retime::motion::{Options, Simulation, simulate};
-use joulepath::tool::retrofit::{Source, read_program};
+use joulepath::retime::motion::{Options, Simulation};
+use support::{irb1600, program, simulated};
 
 const NONE: &str = "[9E9,9E9,9E9,9E9,9E9,9E9]";
-
-fn irb1600() -> Model {
-    find("IRB1600-10/1.45").unwrap()
-}
 
 /// A line to a point in mm with the tool pointing down.
 fn line(point: [f64; 3], speed: &str, zone: &str) -> String {
@@ -29,10 +25,7 @@ fn run(body: &str) -> Simulation {
         "MODULE M\nPROC main()\nMoveAbsJ [[0,0,0,0,60,0],{NONE}],v1000,fine,tool0;\nConfL\\Off;\n\
          ConfJ\\Off;\n{body}ENDPROC\nENDMODULE\n"
     );
-    let file = SourceFile::new(FileId(0), "M.mod".into(), text.into_bytes());
-    let files = [Source { file, relative: "M.mod".into() }];
-    let (program, entry) = read_program(&files, "main").unwrap();
-    simulate(&program, entry, &irb1600(), &Options::default())
+    simulated(&irb1600(), &program(text), &Options::default())
 }
 
 fn runs(simulation: &Simulation) -> impl Iterator<Item = &Run> {

@@ -303,9 +303,9 @@ fn movements_with_optional_parameters_as_arguments_are_kept() {
         for call in ["rGo;".to_owned(), format!("rGo\\W:={given};")] {
             let start = "MoveJ pHere,v1000,fine,tool0;".to_owned();
             let found = segments(&routine, &[start, call.clone()]);
-            let told = reasons(&found);
+            let reported = reasons(&found);
             let own = if option == "T?W" && call != "rGo;" { "timed" } else { "argument" };
-            assert!(told.contains(&own.to_owned()), "{option} {call}: {found:?}");
+            assert!(reported.contains(&own.to_owned()), "{option} {call}: {found:?}");
         }
     }
 }
@@ -348,8 +348,8 @@ fn functions_that_interrupt_routines_call_are_considered() {
             "MoveL Offs(pHere,0,90,-90+nS),v500,fine,tool0;",
         ];
         let found = segments(&declared, &movements.map(str::to_owned));
-        let told = reasons(&found);
-        assert_eq!(told.get(1).map_or("", String::as_str), expected, "{statement}: {found:?}");
+        let reported = reasons(&found);
+        assert_eq!(reported.get(1).map_or("", String::as_str), expected, "{statement}: {found:?}");
     }
 }
 
@@ -374,8 +374,8 @@ fn movements_with_arguments_that_may_fail_are_kept_under_an_error_handler() {
              MoveL {last},v500,fine,tool0;\n{handler}\nENDPROC\n"
         );
         let movements = ["MoveJ pHere,v1000,fine,tool0;", "rGo;"].map(str::to_owned);
-        let told = reasons(&segments(&declared, &movements));
-        let is_told = told.iter().any(|reason| reason == "handler");
-        assert_eq!(is_told, expected, "{last} {handler}: {told:?}");
+        let reported = reasons(&segments(&declared, &movements));
+        let is_told = reported.iter().any(|reason| reason == "handler");
+        assert_eq!(is_told, expected, "{last} {handler}: {reported:?}");
     }
 }

@@ -55,7 +55,7 @@ fn diagnosed_with(nominal: &Model, robot: &Robot<'_>, settings: &Settings) -> Di
 /// Names of the effects with their joints, from 1.
 fn named(found: &Diagnosis) -> Vec<(&'static str, Vec<usize>)> {
     let joints = |joints: &[usize]| joints.iter().map(|joint| joint + 1).collect();
-    found.effects.iter().map(|said| (said.effect.id, joints(&said.joints))).collect()
+    found.effects.iter().map(|asserted| (asserted.effect.id, joints(&asserted.joints))).collect()
 }
 
 #[test]
@@ -79,20 +79,20 @@ fn only_changes_against_the_baseline_are_reported() {
     let logged = |effects, seed| Robot { model: &truth, effects, noise: 0.005 }.samples(seed);
     let before = logged(&both[..1], 4);
     let settings = Settings { trust: Trust::Commissioned, effects: ALL.iter().collect() };
-    for (effects, told) in [(&both[..1], vec![]), (&both[..], vec![("stribeck", vec![2])])] {
+    for (effects, reported) in [(&both[..1], vec![]), (&both[..], vec![("stribeck", vec![2])])] {
         let now = [1, 2, 3].map(|seed| logged(effects, seed));
         let [train, held, before] = [&[&now[0], &now[1]][..], &[&now[2]], &[&before]];
         let found = diagnose_logs(&nominal, Logs { train, held, before }, &settings, &|_| {});
-        assert_eq!(named(&found), told);
+        assert_eq!(named(&found), reported);
         let known: Vec<&str> = found.before.iter().flatten().map(|of| of.effect.id).collect();
         assert_eq!(known, ["payload"]);
         // The model contains both effects.
         assert!(found.shrink.total.value > SHRINKS, "{:?}", found.shrink);
         let held = &Record::all(&nominal, &now[2])[0];
-        let said = predicted(held, &found.improved.applied);
+        let predictions = predicted(held, &found.improved.applied);
         let left = |joint: usize| -> f64 {
-            let squares = held.measured[joint].iter().zip(&said[joint]);
-            let squares = squares.map(|(measured, said)| (measured - said).powi(2));
+            let squares = held.measured[joint].iter().zip(&predictions[joint]);
+            let squares = squares.map(|(measured, predicted)| (measured - predicted).powi(2));
             (squares.sum::<f64>() / held.motion.rows() as f64).sqrt()
                 / held.motion.scale(joint).torque[1]
         };
@@ -111,10 +111,13 @@ fn offsets_are_found_with_their_size() {
     assert_eq!(named(&found), [("torque_offset", vec![5])]);
     let samples = robot.samples(1);
     let record = Record::all(&nominal, &samples);
-    let of = &found.effects[0].parameters[0];
+    let found_offset = &found.effects[0].parameters[0];
     // Assumed standard deviation of the nominal model's own offset, as a share of the torque.
     let believed = 0.002 * record[0].motion.scale(4).torque[1];
-    assert!((of.value - expected).abs() < WITHIN * of.sd.hypot(believed), "{of:?} {expected}");
+    assert!(
+        (found_offset.value - expected).abs() < WITHIN * found_offset.sd.hypot(believed),
+        "{found_offset:?} {expected}"
+    );
     // The library may be incomplete, which limits the probability.
     assert!((0.5..=0.95).contains(&found.effects[0].probability));
     assert!(found.shrink.by_effect.value > SHRINKS, "{:?}", found.shrink);
@@ -128,7 +131,7 @@ fn shares_of_the_gap_add_up() {
     let stribeck = effect("stribeck").unwrap();
     let robot = Robot { model: &truth, effects: &[(stribeck, 1, &[4.0, 0.15])], noise: 0.005 };
     let found = diagnosed(&nominal, &robot);
-    let ids: Vec<&'static str> = found.effects.iter().map(|said| said.effect.id).collect();
+    let ids: Vec<&'static str> = found.effects.iter().map(|asserted| asserted.effect.id).collect();
     assert_eq!(ids, ["stribeck"]);
     let samples = robot.samples(3);
     let records = Record::all(&nominal, &samples);
@@ -136,19 +139,19 @@ fn shares_of_the_gap_add_up() {
     assert_eq!(shared.players, ["stribeck", PARAMETERS]);
     // Squared residuals of both models by joint, while the joint moves.
     let squares = |model: &Model| -> Vec<f64> {
-        let said = predicted(&records[0], model);
-        let of = |joint: usize| {
+        let predictions = predicted(&records[0], model);
+        let residual = |joint: usize| {
             let (mut missed, mut size) = (0.0, 0.0);
-            for (row, said) in said[joint].iter().enumerate() {
+            for (row, predicted) in predictions[joint].iter().enumerate() {
                 if records[0].moves(joint, row) {
                     let measured = records[0].measured[joint][row];
-                    missed += (measured - said).powi(2);
+                    missed += (measured - predicted).powi(2);
                     size += measured * measured;
                 }
             }
             missed / size
         };
-        (0..nominal.dof).map(of).collect()
+        (0..nominal.dof).map(residual).collect()
     };
     let [before, after] = [&nominal, &found.improved.applied].map(squares);
     for joint in 0..nominal.dof {
@@ -308,9 +311,9 @@ fn two_effects_are_found() {
     let [payload, stribeck] = ["payload", "stribeck"].map(|id| effect(id).unwrap());
     let effects = [(payload, 0, LOAD.as_slice()), (stribeck, 1, [8.0, 0.1].as_slice())];
     let found = diagnosed(&nominal, &Robot { model: &truth, effects: &effects, noise: 0.003 });
-    let mut told = named(&found);
-    told.sort();
-    assert_eq!(told, [("payload", vec![]), ("stribeck", vec![2])]);
+    let mut reported = named(&found);
+    reported.sort();
+    assert_eq!(reported, [("payload", vec![]), ("stribeck", vec![2])]);
 }
 
 /// A strong load, or a strong friction of another joint, does not hide a weak effect.
@@ -373,9 +376,10 @@ fn a_heavy_load_is_not_mistaken_for_another_robot() {
     let samples = robot.samples(1);
     let record = &Record::all(&nominal, &samples)[0];
     let foreign = |joint: &usize| {
-        let (of, said) = (&record.measured[*joint], &record.motion.torque[*joint]);
+        let (measured, modelled) = (&record.measured[*joint], &record.motion.torque[*joint]);
         let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        product(of, said) < 0.5 * (product(of, of) * product(said, said)).sqrt()
+        product(measured, modelled)
+            < 0.5 * (product(measured, measured) * product(modelled, modelled)).sqrt()
     };
     assert!(2 * (0..nominal.dof).filter(foreign).count() >= nominal.dof);
     let found = diagnosed(&nominal, &robot);

@@ -141,8 +141,8 @@ fn the_motor_field_synchronises_two_clocks() {
         }
     }
     let aligned = Aligned { log: late, marks: 4, worst: 0.0, step: 2.0 * LATE };
-    let (found, said) = synchronised(&model, aligned);
-    assert!(said.contains("2.00 ms later"), "{said}");
+    let (found, note) = synchronised(&model, aligned);
+    assert!(note.contains("2.00 ms later"), "{note}");
     let q = |log: &Log| log.column(Channel::Position(0)).unwrap().to_vec();
     let (found_q, both_q) = (q(&found), q(&both));
     for (row, x) in found.rows.iter().zip(&found_q).skip(10).step_by(50) {

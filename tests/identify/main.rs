@@ -165,8 +165,8 @@ fn an_identified_model_is_unchanged_after_writing_and_reading() {
     let found = identify(&model, &samples, &[], &settings(Free::All, Weighting::Joint)).unwrap();
     assert!(found.physically_consistent);
     let read = from_toml("identified.toml", &to_toml(&found.model)).unwrap();
-    let of = |model: &Model| parameters(model, &Load::none());
-    for (a, b) in of(&read).iter().zip(of(&found.model)) {
+    let values = |model: &Model| parameters(model, &Load::none());
+    for (a, b) in values(&read).iter().zip(values(&found.model)) {
         assert!((a - b).abs() < 1e-12, "{a} {b}");
     }
     assert_eq!(read.sensors, found.model.sensors);

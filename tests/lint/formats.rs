@@ -80,8 +80,8 @@ fn schema_of_sarif() -> Value {
     let host = about.lines().find_map(|line| line.strip_prefix("host: ")).unwrap();
     let form = ["metadata", "--format-version", "1", "--offline", "--locked"];
     let output = cargo(&[&form[..], &["--filter-platform", host]].concat());
-    let told = String::from_utf8_lossy(&output.stderr);
-    let metadata: Value = serde_json::from_slice(&output.stdout).expect(&told);
+    let reported = String::from_utf8_lossy(&output.stderr);
+    let metadata: Value = serde_json::from_slice(&output.stdout).expect(&reported);
     let packages = metadata["packages"].as_array().unwrap();
     let types = packages.iter().find(|package| package["name"] == "serde-sarif").unwrap();
     let manifest = Path::new(types["manifest_path"].as_str().unwrap());

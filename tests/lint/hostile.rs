@@ -48,7 +48,7 @@ fn assert_linted_in_time(main: &str, robot: &str) {
     let text = format!(
         "MODULE M\nPROC main()\nMoveJ pA,v1000,fine,tGripper;\n{main}\nENDPROC\nENDMODULE\n"
     );
-    let fixture = Fixture::of("M.mod".into(), &[text, shared]);
+    let fixture = Fixture::from_texts("M.mod".into(), &[text, shared]);
     assert_eq!(fixture.model.is_some(), !robot.is_empty());
     let before = Instant::now();
     fixture.report();

@@ -33,17 +33,17 @@ pub(crate) struct Fixture {
 impl Fixture {
     /// From the name and text of a file: `! robot: NAME`, `! inputs: diA=1 diB=2`.
     pub(crate) fn new(path: PathBuf, text: &str) -> Fixture {
-        Fixture::of(path, &[text.to_owned()])
+        Fixture::from_texts(path, &[text.to_owned()])
     }
 
     /// From the texts of several files; the name is that of the first one.
-    pub(crate) fn of(path: PathBuf, texts: &[String]) -> Fixture {
-        let said = |key: &str| {
+    pub(crate) fn from_texts(path: PathBuf, texts: &[String]) -> Fixture {
+        let setting = |key: &str| {
             let mut lines = texts.iter().flat_map(|text| text.lines());
             lines.find_map(|line| line.trim().strip_prefix(key)).map(str::trim)
         };
-        let model = said("! robot:").map(|name| effects::load(name).unwrap());
-        let inputs = said("! inputs:").unwrap_or_default().split_whitespace().map(|pair| {
+        let model = setting("! robot:").map(|name| effects::load(name).unwrap());
+        let inputs = setting("! inputs:").unwrap_or_default().split_whitespace().map(|pair| {
             let (name, seconds) = pair.split_once('=').unwrap();
             (name.to_lowercase(), seconds.parse().unwrap())
         });
@@ -62,7 +62,7 @@ impl Fixture {
         let others = self.files[1..].iter();
         let others = others.map(|file| String::from_utf8(file.bytes.clone()).unwrap());
         let texts: Vec<String> = std::iter::once(text).chain(others).collect();
-        Fixture::of(self.path.clone(), &texts)
+        Fixture::from_texts(self.path.clone(), &texts)
     }
 
     pub(crate) fn text(&self) -> String {
@@ -168,12 +168,12 @@ fn comments_on_robot_rules_are_accepted_without_a_robot() {
     let mut fixture = all.into_iter().nth(path.unwrap()).unwrap();
     fixture.model = None;
     let findings = fixture.report().findings;
-    let told: Vec<&str> = findings
+    let reported: Vec<&str> = findings
         .iter()
         .filter(|finding| finding.rule.code == "EW001")
         .map(|finding| finding.message.as_str())
         .collect();
-    assert_eq!(told, ["there is no rule EW999: joulepath rule lists them"]);
+    assert_eq!(reported, ["there is no rule EW999: joulepath rule lists them"]);
 }
 
 /// A program that only moves has no unnecessary movement.

@@ -47,7 +47,7 @@ pub(crate) fn planted_faults() -> Vec<PlantedFault> {
                 own.push('\n');
                 inside &= line != "ENDMODULE";
             }
-            let fixture = Fixture::of(path.clone(), &[own, shared.clone()]);
+            let fixture = Fixture::from_texts(path.clone(), &[own, shared.clone()]);
             faults.push(PlantedFault { code: code.clone(), name: name.to_owned(), fixture });
         }
     }

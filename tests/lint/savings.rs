@@ -76,10 +76,15 @@ fn savings_agree_with_two_simulations() {
             let (energy_after, time_after) = cycle(&with(&fixture, &finding));
             let spared = energy - energy_after;
             let off = (spared - saving.energy_j).abs();
-            let told = finding.full_message();
-            assert!(off <= JOULES.max(SHARE * spared.abs()), "{spared} J: {told}");
+            let reported = finding.full_message();
+            assert!(off <= JOULES.max(SHARE * spared.abs()), "{spared} J: {reported}");
             let late = (time - time_after - saving.time_s).abs();
-            assert!(late <= SECONDS, "{} s, told {} s: {told}", time - time_after, saving.time_s);
+            assert!(
+                late <= SECONDS,
+                "{} s, reported {} s: {reported}",
+                time - time_after,
+                saving.time_s
+            );
             assert!(saving.low_j <= saving.energy_j && saving.energy_j <= saving.high_j);
             compared.insert(finding.rule.code);
         }

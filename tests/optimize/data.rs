@@ -51,10 +51,10 @@ fn wrong_limits_are_refused() {
 #[test]
 fn wrong_references_are_refused() {
     let q = [0.0; DOF];
-    let of = |t: &[f64]| Reference::new(t.to_vec(), vec![q; t.len()], vec![q; t.len()]);
-    assert_eq!(of(&[0.0]), Err(ReferenceError::Lengths));
-    assert_eq!(of(&[0.1, 0.2]), Err(ReferenceError::Time(0)));
-    assert_eq!(of(&[0.0, 0.2, 0.2]), Err(ReferenceError::Time(2)));
+    let reference = |t: &[f64]| Reference::new(t.to_vec(), vec![q; t.len()], vec![q; t.len()]);
+    assert_eq!(reference(&[0.0]), Err(ReferenceError::Lengths));
+    assert_eq!(reference(&[0.1, 0.2]), Err(ReferenceError::Time(0)));
+    assert_eq!(reference(&[0.0, 0.2, 0.2]), Err(ReferenceError::Time(2)));
     let nan = Reference::new(vec![0.0, 1.0], vec![q, [f64::NAN; DOF]], vec![q; 2]);
     assert_eq!(nan, Err(ReferenceError::Value(1)));
 }
@@ -151,13 +151,13 @@ fn unlimited_time_gives_a_finite_optimal_duration() {
     // Copper losses of holding give an optimal duration.
     let grid = arm::grid(&arm::Path::random(2), 40, 1.0);
     let fastest = time_optimal(&grid, &arm::limits()).into_profile().unwrap();
-    let of = |time: f64| {
+    let optimum = |time: f64| {
         let outcome = arm::least_energy(&grid, &arm::limits(), &MODEL, &fastest, time);
         outcome.into_optimum().unwrap()
     };
-    let (enough, endless) = (of(20.0 * fastest.duration()), of(f64::INFINITY));
+    let (enough, endless) = (optimum(20.0 * fastest.duration()), optimum(f64::INFINITY));
     assert!(enough.profile.duration() < 10.0 * fastest.duration());
-    assert!(enough.energy.total() < of(1.2 * fastest.duration()).energy.total());
+    assert!(enough.energy.total() < optimum(1.2 * fastest.duration()).energy.total());
     assert!(endless.energy.total() < 1.01 * enough.energy.total());
 }
 

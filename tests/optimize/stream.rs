@@ -106,25 +106,25 @@ fn limits_are_kept_or_the_time_is_refused() {
     let reference = smooth(0.6);
     let intervals = || vec![0.05; 12];
     let free = fitted(fit_stream(&reference, intervals(), &FREE, &LEVER).unwrap()).stream;
-    let of = |share: f64| StreamLimits {
+    let scaled = |share: f64| StreamLimits {
         velocity: free.max_velocity().map(|v| v.max(1e-3) * share),
         acceleration: free.max_acceleration().map(|a| a.max(1e-3) * share),
         jerk: free.max_jerk().map(|j| j.max(1e-3) * share),
     };
     // Slightly lower limits are possible with another timing.
-    let tight = of(0.97);
+    let tight = scaled(0.97);
     assert!(tight.worst_ratio(&free) > 1.02);
     let fit = fitted(fit_stream(&reference, intervals(), &tight, &LEVER).unwrap());
     assert!(tight.worst_ratio(&fit.stream) <= 1.0);
     assert!(fit.lag > 1e-3 && fit.deviation < 0.3 * fit.lag, "{} {}", fit.lag, fit.deviation);
     // Half of the limits is possible only with the computed stretch.
-    let impossible = of(0.5);
+    let impossible = scaled(0.5);
     let refused = fit_stream(&reference, intervals(), &impossible, &LEVER).unwrap();
     let StreamFit::TooFast { stretch } = refused else { panic!("{refused:?}") };
     let slower = intervals().iter().map(|d| d * stretch * 1.0001).collect();
     fitted(fit_stream(&reference, slower, &impossible, &LEVER).unwrap());
     let faster = intervals().iter().map(|d| d * 0.5 * (1.0 + stretch)).collect();
-    let refused = fit_stream(&reference, faster, &of(0.4), &LEVER).unwrap();
+    let refused = fit_stream(&reference, faster, &scaled(0.4), &LEVER).unwrap();
     assert!(matches!(refused, StreamFit::TooFast { .. }));
 }
 
@@ -190,8 +190,8 @@ fn the_polygon_of_the_points_keeps_the_requested_distance() {
     let circle = |t: f64| {
         let (angle, speed) = (t - (TAU * t).sin() / TAU, 1.0 - (TAU * t).cos());
         let (q, qd) = (angle * FRAC_PI_2, speed * FRAC_PI_2);
-        let of = |a: f64, b: f64| std::array::from_fn(|j| [a, b, 0.0, 0.0, 0.0, 0.0][j]);
-        (of(q.cos(), q.sin()), of(-q.sin() * qd, q.cos() * qd))
+        let joints = |a: f64, b: f64| std::array::from_fn(|j| [a, b, 0.0, 0.0, 0.0, 0.0][j]);
+        (joints(q.cos(), q.sin()), joints(-q.sin() * qd, q.cos() * qd))
     };
     let reference = Reference::sample(1.0, 2000, circle).unwrap();
     let farthest = |polygon: f64| {
