@@ -10,7 +10,6 @@ mod cases;
 mod support;
 
 use cases::{Case, EASY, Kind};
-use joulepath::retime::energy::EnergyParts;
 use joulepath::retime::energy::power::motion_energy;
 use joulepath::retime::motion::controller::motion_limits;
 use joulepath::retime::motion::sampling::{Loaded, SpeedCap};
@@ -24,7 +23,7 @@ use joulepath::retime::optimize::energy_program::{energy_bound, minimize_energy}
 use joulepath::retime::optimize::freedom::{Bound, Freedom};
 use joulepath::retime::optimize::path_energy::evaluate;
 use joulepath::retime::optimize::path_grid;
-use joulepath::retime::optimize::retime::{Goal, Task, retime};
+use joulepath::retime::optimize::retime::{Goal, retime};
 use joulepath::retime::path::joint_path::DOF;
 use rayon::prelude::*;
 
@@ -85,18 +84,6 @@ fn quartiles(mut values: Vec<f64>) -> String {
     row.join(" ")
 }
 
-fn task<'a>(case: &'a Case, freedom: &'a Freedom) -> Task<'a> {
-    Task {
-        model: &case.model,
-        run: case.run(),
-        energy_before: EnergyParts::default(),
-        spacing_s: 0.05,
-        closest_s: 0.04,
-        freedom,
-        cost: Cost::Electrical,
-    }
-}
-
 /// The fastest profile on the path of a case without a jerk limit, with grid and limits.
 fn fastest(case: &Case) -> Option<(PathGrid, PathLimits, Profile)> {
     let (path, run) = (case.path()?, case.run());
@@ -116,7 +103,7 @@ fn fastest(case: &Case) -> Option<(PathGrid, PathLimits, Profile)> {
 fn slowness(case: &Case) -> Option<f64> {
     let least = fastest(case)?.2.duration();
     let freedom = Freedom { joints: Bound::Robot, ..Freedom::none() };
-    let stream = retime(&task(case, &freedom), Goal::Fastest).ok()?;
+    let stream = retime(&case.task(&freedom), Goal::Fastest).ok()?;
     (least > SHORTEST).then(|| (stream.duration_s - case.run().settling) / least)
 }
 
@@ -132,7 +119,7 @@ fn saving(case: &Case, factor: f64) -> Option<Saving> {
     let best = minimize_energy(&grid, &limits, &model, &fastest, time, bound.as_ref());
     let best = best.into_optimum()?;
     let freedom = Freedom { joints: Bound::Robot, ..Freedom::none() };
-    let stream = retime(&task(case, &freedom), Goal::Exactly(time + run.settling)).ok();
+    let stream = retime(&case.task(&freedom), Goal::Exactly(time + run.settling)).ok();
     let realised = stream.map(|retiming| {
         let duration = retiming.stream.duration();
         let motion = TimedMotion::Stream(retiming.stream);
@@ -158,7 +145,7 @@ fn lateness(case: &Case) -> Option<f64> {
         .map(|j| seven_segments((run.end[j] - run.start[j]).abs(), v[j], a[j], jerk[j]))
         .fold(0.0, f64::max);
     let freedom = Freedom { joints: Bound::Robot, ..Freedom::none() };
-    let fastest = retime(&task(case, &freedom), Goal::Fastest).ok()?;
+    let fastest = retime(&case.task(&freedom), Goal::Fastest).ok()?;
     (least > SHORTEST).then(|| (fastest.duration_s - run.settling) / least)
 }
 

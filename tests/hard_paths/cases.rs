@@ -5,8 +5,12 @@ use std::fmt::Write;
 use joulepath::arm::dynamics::{Data, torque};
 use joulepath::arm::kinematics::{fk, ik_near};
 use joulepath::arm::robot::{Model, from_toml};
+use joulepath::retime::energy::EnergyParts;
 use joulepath::retime::motion::timeline::{Run, What};
 use joulepath::retime::motion::{Options, Simulation};
+use joulepath::retime::optimize::cost::Cost;
+use joulepath::retime::optimize::freedom::Freedom;
+use joulepath::retime::optimize::retime::Task;
 use joulepath::retime::path::joint_path::{DOF, JointPath, Joints};
 use nalgebra::{Isometry3, Translation3, Vector3};
 
@@ -70,6 +74,19 @@ impl Case {
         match self.run().motions.as_slice() {
             [(_, joulepath::retime::motion::timed::TimedMotion::Path(path, _))] => Some(path),
             _ => None,
+        }
+    }
+
+    /// The task of a stream for its last run.
+    pub(crate) fn task<'a>(&'a self, freedom: &'a Freedom) -> Task<'a> {
+        Task {
+            model: &self.model,
+            run: self.run(),
+            energy_before: EnergyParts::default(),
+            spacing_s: 0.05,
+            closest_s: 0.04,
+            freedom,
+            cost: Cost::Electrical,
         }
     }
 }

@@ -10,11 +10,9 @@ mod played;
 mod support;
 
 use cases::{Case, EASY, HARD, Kind, cases};
-use joulepath::retime::energy::EnergyParts;
-use joulepath::retime::optimize::cost::Cost;
 use joulepath::retime::optimize::freedom::{Bound, Freedom};
 use joulepath::retime::optimize::reason::Reason;
-use joulepath::retime::optimize::retime::{Goal, Task, retime};
+use joulepath::retime::optimize::retime::{Goal, retime};
 use rayon::prelude::*;
 
 /// Number of paths of each sort.
@@ -37,15 +35,7 @@ fn streams_keep_all_limits_or_the_refusal_has_a_reason() {
     let results: Vec<(String, bool)> = all
         .par_iter()
         .flat_map(|case| {
-            let task = Task {
-                model: &case.model,
-                run: case.run(),
-                energy_before: EnergyParts::default(),
-                spacing_s: 0.05,
-                closest_s: 0.04,
-                freedom: &freedom,
-                cost: Cost::Electrical,
-            };
+            let task = case.task(&freedom);
             let fastest = retime(&task, Goal::Fastest);
             let least = fastest.as_ref().map_or(case.run().duration(), |found| found.duration_s);
             let thrifty = retime(&task, Goal::Exactly(1.1 * least));

@@ -12,11 +12,8 @@ const LONGEST: Duration = Duration::from_secs(40);
 /// Truncated, with invalid bytes, and with exchanged halves.
 #[test]
 fn damaged_programs_are_linted_without_a_panic() {
-    let mut random = 12_345_u64;
-    let mut below = |limit: usize| {
-        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-        (random >> 33) as usize % limit.max(1)
-    };
+    let mut random = fastrand::Rng::with_seed(12_345);
+    let mut below = |limit: usize| random.usize(..limit.max(1));
     for planted in planted_faults().into_iter().filter(|planted| planted.name.starts_with("Fires"))
     {
         let mut fixture = planted.fixture;
