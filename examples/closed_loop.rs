@@ -22,7 +22,7 @@ const CASES: usize = 24;
 const MOTIONS: usize = 4;
 
 /// Residuals of a model: relative torque, power \[W\], relative energy.
-struct Missed {
+struct Residuals {
     torque: f64,
     power: f64,
     energy: f64,
@@ -49,7 +49,7 @@ fn main() {
             diagnose(&input.nominal, records(&input.nominal, &input.train), &heldout, &options);
         let named: Vec<&str> = found.effects.iter().map(|asserted| asserted.effect.id).collect();
         let [before, after] = [&input.nominal, &found.improved.applied]
-            .map(|model| missed(model, &input.nominal, &motions, &settings));
+            .map(|model| residuals(model, &input.nominal, &motions, &settings));
         println!(
             "{number:>4}  {:<20} {:<20} {:>6.2} → {:<6.2} {:>7.1} → {:<7.1} {:>6.2} → {:<6.2}",
             case.label.effects[0].id,
@@ -65,7 +65,12 @@ fn main() {
 }
 
 /// Residuals of a model for the robot's true torques and power.
-fn missed(model: &Model, nominal: &Model, motions: &[Unlogged], settings: &Settings) -> Missed {
+fn residuals(
+    model: &Model,
+    nominal: &Model,
+    motions: &[Unlogged],
+    settings: &Settings,
+) -> Residuals {
     let logs = noiseless(motions, settings);
     let (mut torque, mut size) = (vec![0.0; model.dof], vec![0.0; model.dof]);
     for record in records(nominal, &logs) {
@@ -93,7 +98,7 @@ fn missed(model: &Model, nominal: &Model, motions: &[Unlogged], settings: &Setti
             energies[1] += predicted;
         }
     }
-    Missed {
+    Residuals {
         torque: (relative / model.dof as f64).sqrt(),
         power: f64::sqrt(squares / rows),
         energy: (energies[1] / energies[0] - 1.0).abs(),

@@ -151,7 +151,7 @@ fn path(case: &Case) -> Value {
             "energy_s": energy_s,
         }));
     }
-    json!({ "name": case.name, "sizes": sizes, "free": free(case, &limits, &caps) })
+    json!({ "name": case.name, "sizes": sizes, "free": free_stream(case, &limits, &caps) })
 }
 
 /// Input of the peers: the nodes and the path at these.
@@ -184,7 +184,7 @@ fn fastest_stream(case: &Case) -> Option<Value> {
 }
 
 /// A stream that may leave its path, from the slowed fastest profile.
-fn free(case: &Case, limits: &PathLimits, caps: &[SpeedCap]) -> Value {
+fn free_stream(case: &Case, limits: &PathLimits, caps: &[SpeedCap]) -> Value {
     let path = case.path().unwrap();
     let loaded = Loaded { model: &case.model, load: &case.run().load };
     let nodes = path_grid::nodes(&case.model, path, caps, SIZES[0]);

@@ -63,11 +63,12 @@ fn main() {
         println!("  share realised    {}", quartiles(share));
     }
     let joint: Vec<&Case> = cases.iter().filter(|case| case.kind == Kind::EasyJoint).collect();
-    let ratios: Vec<f64> = joint.par_iter().filter_map(|case| lateness(case)).collect();
+    let ratios: Vec<f64> =
+        joint.par_iter().filter_map(|case| ratio_with_jerk_limit(case)).collect();
     println!("time of the fastest stream over the least with its jerk, {} moves:", ratios.len());
     println!("                    {}", quartiles(ratios));
     let others = cases.par_iter().filter(|case| case.kind != Kind::EasyJoint);
-    let ratios: Vec<f64> = others.filter_map(slowness).collect();
+    let ratios: Vec<f64> = others.filter_map(ratio_without_jerk_limit).collect();
     println!("and over the least without a limit on jerk, {} lines and blends:", ratios.len());
     println!("                    {}", quartiles(ratios));
 }
@@ -100,7 +101,7 @@ fn fastest(case: &Case) -> Option<(PathGrid, PathLimits, Profile)> {
 
 /// Duration of the fastest stream over the least one on its path without a jerk limit: an upper
 /// bound of the cost of the jerk limit.
-fn slowness(case: &Case) -> Option<f64> {
+fn ratio_without_jerk_limit(case: &Case) -> Option<f64> {
     let least = fastest(case)?.2.duration();
     let freedom = Freedom { joints: Bound::Robot, ..Freedom::none() };
     let stream = retime(&case.task(&freedom), Goal::Fastest).ok()?;
@@ -136,7 +137,7 @@ fn saving(case: &Case, factor: f64) -> Option<Saving> {
 
 /// Duration of the fastest stream of a joint move over the largest least duration of its single
 /// joints with limits on speed, acceleration and jerk: a lower bound of any synchronous motion.
-fn lateness(case: &Case) -> Option<f64> {
+fn ratio_with_jerk_limit(case: &Case) -> Option<f64> {
     let run = case.run();
     let limits = &case.model.limits;
     let (v, a, jerk) =

@@ -42,7 +42,7 @@ ENDMODULE
 /// Number of true robots, and accepted number of them within the 90 % intervals.
 const TRUTHS: usize = 100;
 const INSIDE: std::ops::RangeInclusive<usize> = 85..=95;
-/// Number of robots with their own energy in its interval.
+/// Least number of true robots whose calibrated energy lies in its own interval.
 const POINTS: usize = 95;
 
 fn pick_place() -> Vec<Source> {

@@ -53,13 +53,18 @@ fn header() -> Vec<String> {
     [vec!["t".into()], columns("q"), columns("qd"), columns("qdd"), columns("tau")].concat()
 }
 
-struct Bench {
+struct LogFolder {
     folder: tempfile::TempDir,
 }
 
-impl Bench {
-    fn new() -> Bench {
-        Bench { folder: tempfile::tempdir().unwrap() }
+impl LogFolder {
+    fn new() -> LogFolder {
+        LogFolder { folder: tempfile::tempdir().unwrap() }
+    }
+
+    /// A log with the rows of [`rows`], or similar ones.
+    fn log(&self, rows: &[Vec<f64>]) -> PathBuf {
+        self.write(&header(), &cells(rows), ",")
     }
 
     fn write(&self, header: &[String], rows: &[Vec<String>], separator: &str) -> PathBuf {
@@ -92,10 +97,10 @@ fn cells(rows: &[Vec<f64>]) -> Vec<Vec<String>> {
 
 #[test]
 fn the_result_has_the_fields_of_the_contract_and_the_model_predicts() {
-    let bench = Bench::new();
-    let log = bench.write(&header(), &cells(&rows()), ",");
-    let model = bench.folder.path().join("model.toml");
-    let page = bench.folder.path().join("page.html");
+    let logs = LogFolder::new();
+    let log = logs.log(&rows());
+    let model = logs.folder.path().join("model.toml");
+    let page = logs.folder.path().join("page.html");
     let out = ["--out", model.to_str().unwrap(), "--report", page.to_str().unwrap()];
     let found = identified(&log, &out);
     assert_eq!(found["rank"], 58);
@@ -132,7 +137,7 @@ fn the_result_has_the_fields_of_the_contract_and_the_model_predicts() {
 
 #[test]
 fn repairs_of_a_log_are_reported() {
-    let bench = Bench::new();
+    let logs = LogFolder::new();
     let mut broken = cells(&rows());
     broken[10][3] = "NaN".into();
     broken[20][5] = "abc".into();
@@ -143,7 +148,7 @@ fn repairs_of_a_log_are_reported() {
     }
     broken[60][0] = "-1e200".into();
     broken[70][0] = "5000".into();
-    let log = bench.write(&header(), &broken, ",");
+    let log = logs.write(&header(), &broken, ",");
     let message = stderr(&identify(&log, &[]));
     for text in [
         "row 12 left out: q3 is 'NaN'",
@@ -159,24 +164,24 @@ fn repairs_of_a_log_are_reported() {
     // A note reports rates of only some joints as unusable.
     let mut few = header();
     few[12] = "other".into();
-    let message = stderr(&identify(&bench.write(&few, &cells(&rows()), ","), &[]));
+    let message = stderr(&identify(&logs.write(&few, &cells(&rows()), ","), &[]));
     assert!(message.contains("no column qd6: qd1, qd2, qd3, qd4, qd5 not used"), "{message}");
     // Semicolons and decimal commas give the same result.
-    let plain = bench.write(&header(), &cells(&rows()), ",");
+    let plain = logs.log(&rows());
     let expected = identify(&plain, &["-q"]).stdout;
     let commas: Vec<Vec<String>> = cells(&rows())
         .iter()
         .map(|row| row.iter().map(|cell| cell.replace('.', ",")).collect())
         .collect();
-    let log = bench.write(&header(), &commas, ";");
+    let log = logs.write(&header(), &commas, ";");
     assert_eq!(identify(&log, &["-q"]).stdout, expected);
-    let log = bench.write(&header(), &cells(&rows()), "|");
+    let log = logs.write(&header(), &cells(&rows()), "|");
     assert_eq!(identify(&log, &["-q"]).stdout, expected);
 }
 
 #[test]
 fn unusable_logs_are_refused_with_the_way_out() {
-    let bench = Bench::new();
+    let logs = LogFolder::new();
     let scaled = |columns: std::ops::Range<usize>, by: &dyn Fn(usize) -> f64| {
         let mut all = rows();
         for row in &mut all {
@@ -233,7 +238,7 @@ fn unusable_logs_are_refused_with_the_way_out() {
         ((header(), cells(&rows()[..3])), "3 usable rows"),
         ((header(), cells(&rows()[..15])), "usable equations"),
     ] {
-        let log = bench.write(&header, &rows, ",");
+        let log = logs.write(&header, &rows, ",");
         refused(&arguments(&log, &[]), message);
     }
 }
@@ -241,7 +246,7 @@ fn unusable_logs_are_refused_with_the_way_out() {
 /// Torques unrelated to the motion: reversed, delayed, or noise.
 #[test]
 fn torques_unrelated_to_the_motion_are_refused() {
-    let bench = Bench::new();
+    let logs = LogFolder::new();
     let tau = 19..25;
     let all = rows();
     let reversed: Vec<Vec<f64>> = all
@@ -254,7 +259,7 @@ fn torques_unrelated_to_the_motion_are_refused() {
         .map(|row| [&row[..19], &all[random.usize(..all.len())][19..25]].concat())
         .collect();
     for (rows, message) in [(reversed, "would give power"), (mixed, "explains")] {
-        let log = bench.write(&header(), &cells(&rows), ",");
+        let log = logs.log(&rows);
         let text = refused(&arguments(&log, &[]), message);
         assert!(text.contains("no robot that can be"), "{text}");
     }
@@ -264,7 +269,7 @@ fn torques_unrelated_to_the_motion_are_refused() {
         .zip(&all[20..])
         .map(|(old, new)| [&new[..19], &old[tau.clone()]].concat())
         .collect();
-    let log = bench.write(&header(), &cells(&late), ",");
+    let log = logs.log(&late);
     let text = stderr(&joulepath(&arguments(&log, &[])));
     assert!(text.contains("0.50 s later than the positions"), "{text}");
 }
@@ -272,14 +277,14 @@ fn torques_unrelated_to_the_motion_are_refused() {
 /// The many parameters explain a disturbance of three seconds, but do not predict it.
 #[test]
 fn an_overfitted_model_is_not_graded_good() {
-    let bench = Bench::new();
+    let logs = LogFolder::new();
     let mut all = rows();
     all.truncate(120);
     for row in &mut all {
         let astray = 6.0 * (2.0 * row[0]).sin();
         row[22] += astray;
     }
-    let log = bench.write(&header(), &cells(&all), ",");
+    let log = logs.log(&all);
     let found = identified(&log, &[]);
     let quality = &found["quality"];
     let share = |key: &str| quality[key][3].as_f64().unwrap();
@@ -289,14 +294,14 @@ fn an_overfitted_model_is_not_graded_good() {
 
 #[test]
 fn a_joint_that_does_not_move_is_reported() {
-    let bench = Bench::new();
+    let logs = LogFolder::new();
     let mut all = rows();
     for row in &mut all {
         row[4] = 0.3;
         row[10] = 0.0;
         row[16] = 0.0;
     }
-    let log = bench.write(&header(), &cells(&all), ",");
+    let log = logs.log(&all);
     let output = identify(&log, &["--format", "json"]);
     assert!(stderr(&output).contains("joint 4 does not move"));
     let found = parsed(&output);
@@ -310,8 +315,8 @@ fn a_joint_that_does_not_move_is_reported() {
 /// parameters of the robot file.
 #[test]
 fn the_descent_of_the_paper_is_close_to_the_unconstrained_fit() {
-    let bench = Bench::new();
-    let log = bench.write(&header(), &cells(&rows()), ",");
+    let logs = LogFolder::new();
+    let log = logs.log(&rows());
     let found = identified(&log, &["--method", "ordinary", "--descent"]);
     let numbers = |list: &Value| -> Vec<f64> {
         list.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
@@ -325,8 +330,8 @@ fn the_descent_of_the_paper_is_close_to_the_unconstrained_fit() {
 }
 
 /// A robot file with masses and without gear ratios.
-fn without_motors(bench: &Bench) -> PathBuf {
-    let robot = bench.folder.path().join("direct.toml");
+fn without_motors(logs: &LogFolder) -> PathBuf {
+    let robot = logs.folder.path().join("direct.toml");
     let text = to_toml(&find(ROBOT).unwrap());
     let mut lines: Vec<&str> = Vec::new();
     let mut of_motors = false;
@@ -345,14 +350,14 @@ fn without_motors(bench: &Bench) -> PathBuf {
 /// Without gear ratios, motor torques are recognised only by the carried weight.
 #[test]
 fn torques_too_small_for_the_weight_are_graded_poor() {
-    let bench = Bench::new();
-    let robot = without_motors(&bench);
+    let logs = LogFolder::new();
+    let robot = without_motors(&logs);
     let ratio = find(ROBOT).unwrap().motors.unwrap().ratio;
     let mut all = rows();
     for row in &mut all {
         row[19..25].iter_mut().zip(&ratio).for_each(|(tau, ratio)| *tau /= ratio);
     }
-    let log = bench.write(&header(), &cells(&all), ",");
+    let log = logs.log(&all);
     let [robot, log] = [&robot, &log].map(|path| path.to_str().unwrap());
     let output = joulepath(&["identify", "--robot", robot, "--log", log, "--format", "json"]);
     let message = stderr(&output);
@@ -365,8 +370,8 @@ fn torques_too_small_for_the_weight_are_graded_poor() {
 /// With a URDF without gear ratios the rotors are at the joints; the written model can be read.
 #[test]
 fn a_model_without_gear_ratios_can_be_read_back() {
-    let bench = Bench::new();
-    let robot = without_motors(&bench);
+    let logs = LogFolder::new();
+    let robot = without_motors(&logs);
     // Heavy rotors on all joints.
     let mut all = rows();
     for row in &mut all {
@@ -374,8 +379,8 @@ fn a_model_without_gear_ratios_can_be_read_back() {
             row[19 + joint] += 3.0 * row[13 + joint];
         }
     }
-    let log = bench.write(&header(), &cells(&all), ",");
-    let model = bench.folder.path().join("model.toml");
+    let log = logs.log(&all);
+    let model = logs.folder.path().join("model.toml");
     let [robot, log, model] = [&robot, &log, &model].map(|path| path.to_str().unwrap());
     run(&["identify", "--robot", robot, "--log", log, "--out", model]);
     run(&["predict", "--robot", model, "--log", log]);
@@ -385,7 +390,7 @@ fn a_model_without_gear_ratios_can_be_read_back() {
 
 #[test]
 fn a_log_without_motion_is_refused() {
-    let bench = Bench::new();
+    let logs = LogFolder::new();
     let first = rows().remove(0);
     let still: Vec<Vec<f64>> = (0..ROWS)
         .map(|k| {
@@ -397,14 +402,14 @@ fn a_log_without_motion_is_refused() {
         .collect();
     let names = header();
     let names = [&names[..7], &names[19..25]].concat();
-    let log = bench.write(&names, &cells(&still), ",");
+    let log = logs.write(&names, &cells(&still), ",");
     refused(&arguments(&log, &[]), "no joint moves");
 }
 
 #[test]
 fn options_that_do_not_fit_the_logs_are_reported() {
-    let bench = Bench::new();
-    let log = bench.write(&header(), &cells(&rows()), ",");
+    let logs = LogFolder::new();
+    let log = logs.log(&rows());
     let log = log.to_str().unwrap();
     let args = ["identify", "--robot", ROBOT, "--log", log, log];
     let message = stderr(&run(&[&args[..], &["--validate", log, "--period", "3"]].concat()));
@@ -425,7 +430,7 @@ fn options_that_do_not_fit_the_logs_are_reported() {
 /// With a delay of 10 to 100 ms torques are still explained well; the delay is reported.
 #[test]
 fn a_short_delay_is_reported() {
-    let bench = Bench::new();
+    let logs = LogFolder::new();
     for (delay, least, most) in [(0, f64::NAN, f64::NAN), (1, 0.015, 0.035), (3, 0.06, 0.09)] {
         let all = rows();
         let late: Vec<Vec<f64>> = all
@@ -433,7 +438,7 @@ fn a_short_delay_is_reported() {
             .zip(&all[delay..])
             .map(|(old, new)| [&new[..19], &old[19..25]].concat())
             .collect();
-        let found = identified(&bench.write(&header(), &cells(&late), ","), &[]);
+        let found = identified(&logs.log(&late), &[]);
         let reported = found["quality"]["torques_late_s"].as_f64();
         if delay == 0 {
             assert_eq!(reported, None);
@@ -448,13 +453,13 @@ fn a_short_delay_is_reported() {
 /// One motor-side joint makes a model bad, independent of the other joints.
 #[test]
 fn the_worst_joint_determines_the_grade() {
-    let bench = Bench::new();
+    let logs = LogFolder::new();
     let mut all = rows();
     let mut random = fastrand::Rng::with_seed(3);
     for row in &mut all {
         row[21] = 200.0 * (random.f64() - 0.5);
     }
-    let log = bench.write(&header(), &cells(&all), ",");
+    let log = logs.log(&all);
     let found = identified(&log, &[]);
     assert_eq!(found["quality"]["grade"], "poor", "{}", found["quality"]);
 }
@@ -462,13 +467,13 @@ fn the_worst_joint_determines_the_grade() {
 /// The held-out error is that of the written model, not of the unconstrained fit.
 #[test]
 fn the_validation_error_is_that_of_the_written_model() {
-    let bench = Bench::new();
+    let logs = LogFolder::new();
     let mut all = rows();
     // Negative friction, which no physical model has.
     for row in &mut all {
         row[20] -= 200.0 * row[8].signum();
     }
-    let log = bench.write(&header(), &cells(&all), ",");
+    let log = logs.log(&all);
     let found = identified(&log, &[]);
     let validation = |key: &str| found[key]["validation"][1].as_f64().unwrap();
     assert!(validation("rms") > 2.0 * validation("unconstrained_rms"), "{found}");
@@ -476,25 +481,25 @@ fn the_validation_error_is_that_of_the_written_model() {
 
 #[test]
 fn many_rejected_rows_are_summarised() {
-    let bench = Bench::new();
+    let logs = LogFolder::new();
     let mut broken = cells(&rows());
     for row in broken.iter_mut().step_by(20) {
         row[3] = "NaN".into();
     }
-    let message = stderr(&identify(&bench.write(&header(), &broken, ","), &[]));
+    let message = stderr(&identify(&logs.write(&header(), &broken, ","), &[]));
     assert_eq!(message.matches("left out: q3").count(), 3, "{message}");
     assert!(message.contains("17 more rows left out"), "{message}");
 }
 
 #[test]
 fn values_of_a_resting_joint_are_not_called_identified() {
-    let bench = Bench::new();
+    let logs = LogFolder::new();
     let mut all = rows();
     for row in &mut all {
         (row[4], row[10], row[16]) = (0.3, 0.0, 0.0);
     }
-    let log = bench.write(&header(), &cells(&all), ",");
-    let model = bench.folder.path().join("model.toml");
+    let log = logs.log(&all);
+    let model = logs.folder.path().join("model.toml");
     identify(&log, &["--out", model.to_str().unwrap(), "-q"]);
     let found = load(model.to_str().unwrap()).unwrap();
     let coulomb = found.origins.iter().find(|o| o.table == "friction" && o.key == "coulomb");

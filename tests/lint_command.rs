@@ -252,7 +252,7 @@ fn backups_without_energy_saving_settings_have_findings() {
     assert!(codes(&["--select", "system"], used.path()).is_empty());
 }
 
-/// Three plants and three near misses of each rule that needs a backup.
+/// Three planted faults and three near misses of each rule that needs a backup.
 #[test]
 fn backup_rules_find_planted_faults_and_no_near_misses() {
     let motion = "MOC:CFG_1.0:6:0::\n";

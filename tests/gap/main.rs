@@ -19,7 +19,7 @@ use joulepath::learn::identify::Samples;
 use nalgebra::{DMatrix, DVector};
 
 use excited::{irb1600, normal};
-use simulated::{Robot, spread};
+use simulated::{Robot, perturbed};
 
 /// Largest deviation of a parameter, in standard deviations.
 const WITHIN: f64 = 4.0;
@@ -61,7 +61,7 @@ fn named(found: &Diagnosis) -> Vec<(&'static str, Vec<usize>)> {
 #[test]
 fn healthy_robots_have_no_effect() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 3);
+    let truth = perturbed(&nominal, 3);
     let found = diagnosed(&nominal, &Robot { model: &truth, effects: &[], noise: 0.005 });
     assert!(named(&found).is_empty(), "{:?}", named(&found));
     assert!(matches!(found.verdict, Verdict::ParametersOnly | Verdict::NoGap));
@@ -73,7 +73,7 @@ fn healthy_robots_have_no_effect() {
 #[test]
 fn only_changes_against_the_baseline_are_reported() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 3);
+    let truth = perturbed(&nominal, 3);
     let [load, friction] = ["payload", "stribeck"].map(|id| effect(id).unwrap());
     let both: [(&Effect, usize, &[f64]); 2] = [(load, 0, &LOAD), (friction, 1, &[8.0, 0.1])];
     let logged = |effects, seed| Robot { model: &truth, effects, noise: 0.005 }.samples(seed);
@@ -103,7 +103,7 @@ fn only_changes_against_the_baseline_are_reported() {
 #[test]
 fn offsets_are_found_with_their_size() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 3);
+    let truth = perturbed(&nominal, 3);
     let offset = effect("torque_offset").unwrap();
     let expected = 0.6;
     let robot = Robot { model: &truth, effects: &[(offset, 4, &[expected])], noise: 0.005 };
@@ -127,7 +127,7 @@ fn offsets_are_found_with_their_size() {
 #[test]
 fn shares_of_the_gap_add_up() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 3);
+    let truth = perturbed(&nominal, 3);
     let stribeck = effect("stribeck").unwrap();
     let robot = Robot { model: &truth, effects: &[(stribeck, 1, &[4.0, 0.15])], noise: 0.005 };
     let found = diagnosed(&nominal, &robot);
@@ -182,7 +182,7 @@ fn shares_of_the_gap_add_up() {
 #[test]
 fn a_flipped_current_sign_is_found() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 4);
+    let truth = perturbed(&nominal, 4);
     let sign = effect("current_sign").unwrap();
     let robot = Robot { model: &truth, effects: &[(sign, 2, &[1.0])], noise: 0.005 };
     let found = diagnosed(&nominal, &robot);
@@ -194,7 +194,7 @@ fn a_flipped_current_sign_is_found() {
 #[test]
 fn contacts_are_found_with_force_and_time_window() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 5);
+    let truth = perturbed(&nominal, 5);
     let contact = effect("contact").unwrap();
     for rise in [0.0, 0.35] {
         let coordinates = [30.0, -40.0, 12.0, rise, 2.636, 3.792, 10.0];
@@ -220,7 +220,7 @@ fn contacts_are_found_with_force_and_time_window() {
 #[test]
 fn backlash_is_found_despite_wrong_masses() {
     let nominal = irb1600();
-    let mut truth = spread(&nominal, 5);
+    let mut truth = perturbed(&nominal, 5);
     for (link, factor) in truth.links.iter_mut().zip([1.0, 1.4, 0.6, 1.5, 0.5, 1.5]) {
         link.mass *= factor;
     }
@@ -235,7 +235,7 @@ fn backlash_is_found_despite_wrong_masses() {
 #[test]
 fn a_wrist_coupling_is_found_accurately() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 5);
+    let truth = perturbed(&nominal, 5);
     let effects = [(effect("wrist_coupling").unwrap(), 5, [-0.254, 0.0, 0.0, 0.0].as_slice())];
     let found = diagnosed(&nominal, &Robot { model: &truth, effects: &effects, noise: 5e-4 });
     assert_eq!(named(&found), [("wrist_coupling", vec![5, 6])], "{:?}", found.reasons);
@@ -248,7 +248,7 @@ fn a_wrist_coupling_is_found_accurately() {
 fn a_heavy_load_is_not_mistaken_for_a_flipped_sign() {
     let mut nominal = irb1600();
     nominal.links[5].com.z = -0.15;
-    let truth = spread(&nominal, 3);
+    let truth = perturbed(&nominal, 3);
     let mut load = LOAD;
     for x in &mut load {
         *x *= 5.0;
@@ -264,7 +264,7 @@ fn a_heavy_load_is_not_mistaken_for_a_flipped_sign() {
 #[test]
 fn a_tilted_base_is_found_under_a_heavy_load() {
     let nominal = irb1600();
-    let mut truth = spread(&nominal, 5);
+    let mut truth = perturbed(&nominal, 5);
     let load = LOAD.map(|x| 15.0 * x);
     truth.links[5] = with_body(&truth.links[5], &nominal.kinematics.flange, &load);
     let effects = [(effect("base_tilt").unwrap(), 0, [0.1, -0.06].as_slice())];
@@ -278,7 +278,7 @@ fn a_tilted_base_is_found_under_a_heavy_load() {
 #[test]
 fn current_saturation_is_distinguished_from_load_friction() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 5);
+    let truth = perturbed(&nominal, 5);
     let saturation = effect("current_saturation").unwrap();
     let effects = [(saturation, 2, [0.3, 1.0].as_slice())];
     let found = diagnosed(&nominal, &Robot { model: &truth, effects: &effects, noise: 0.002 });
@@ -291,7 +291,7 @@ fn current_saturation_is_distinguished_from_load_friction() {
 #[test]
 fn a_small_breakaway_friction_is_not_reported() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 3);
+    let truth = perturbed(&nominal, 3);
     let stribeck = effect("stribeck").unwrap();
     let named_with = |share: f64| {
         let stiction = share * truth.friction.coulomb[1];
@@ -307,7 +307,7 @@ fn a_small_breakaway_friction_is_not_reported() {
 #[test]
 fn two_effects_are_found() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 6);
+    let truth = perturbed(&nominal, 6);
     let [payload, stribeck] = ["payload", "stribeck"].map(|id| effect(id).unwrap());
     let effects = [(payload, 0, LOAD.as_slice()), (stribeck, 1, [8.0, 0.1].as_slice())];
     let found = diagnosed(&nominal, &Robot { model: &truth, effects: &effects, noise: 0.003 });
@@ -320,7 +320,7 @@ fn two_effects_are_found() {
 #[test]
 fn weak_effects_are_found_beside_strong_ones() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 6);
+    let truth = perturbed(&nominal, 6);
     let [payload, stribeck, spot] =
         ["payload", "stribeck", "position_friction"].map(|id| effect(id).unwrap());
     let load = LOAD.map(|of| 4.0 * of);
@@ -336,7 +336,7 @@ fn weak_effects_are_found_beside_strong_ones() {
 #[test]
 fn a_permanently_dragging_brake_is_in_one_class_with_friction() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 5);
+    let truth = perturbed(&nominal, 5);
     let effects = [(effect("brake_drag").unwrap(), 0, [30.0, 0.0, 0.0, 0.0].as_slice())];
     let robot = Robot { model: &truth, effects: &effects, noise: 0.003 };
     let found = diagnosed_by(
@@ -351,7 +351,7 @@ fn a_permanently_dragging_brake_is_in_one_class_with_friction() {
 #[test]
 fn brake_drag_at_most_joints_is_not_reported() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 5);
+    let truth = perturbed(&nominal, 5);
     let brake = effect("brake_drag").unwrap();
     let window = [4.0, 7.0, 10.0];
     let coordinates = [20.0, 20.0, 2.0, 1.0].map(|drag| [&[drag], window.as_slice()].concat());
@@ -367,7 +367,7 @@ fn brake_drag_at_most_joints_is_not_reported() {
 #[test]
 fn a_heavy_load_is_not_mistaken_for_another_robot() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 6);
+    let truth = perturbed(&nominal, 6);
     let [mass, x, y, z] = [15.0, -0.4, 0.4, 0.4];
     let moments = [y * y + z * z, x * x + z * z, x * x + y * y, -x * y, -x * z, -y * z];
     let body: Vec<f64> = [1.0, x, y, z].iter().chain(&moments).map(|of| mass * of).collect();
@@ -434,7 +434,7 @@ fn a_diagnosed_load_is_added_to_the_listed_one() {
 #[test]
 fn wrong_torque_constants_at_most_joints_are_not_reported() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 5);
+    let truth = perturbed(&nominal, 5);
     let constant = effect("torque_constant").unwrap();
     let effects: Vec<(&Effect, usize, &[f64])> =
         (0..nominal.dof).map(|joint| (constant, joint, &[0.2][..])).collect();
@@ -449,7 +449,7 @@ fn wrong_torque_constants_at_most_joints_are_not_reported() {
 #[test]
 fn a_force_beside_friction_is_not_mistaken_for_a_brake() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 5);
+    let truth = perturbed(&nominal, 5);
     let [contact, friction] = ["contact", "position_friction"].map(|id| effect(id).unwrap());
     let effects = [
         (contact, 0, [60.0, 0.0, 20.0, 0.0, 2.0, 4.0, 10.0].as_slice()),
@@ -553,7 +553,7 @@ fn unrelated_torques_and_resting_joints_have_no_effect() {
 #[test]
 fn another_torque_unit_is_recognised_as_a_factor() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 3);
+    let truth = perturbed(&nominal, 3);
     let robot = Robot { model: &truth, effects: &[], noise: 0.005 };
     let mut samples = robot.samples(1);
     let factor =

@@ -8,7 +8,7 @@ use joulepath::learn::log::{Channel, Log};
 use crate::excited::{normal, series};
 
 /// The robot with parameter errors as after an identification.
-pub(crate) fn spread(model: &Model, seed: u64) -> Model {
+pub(crate) fn perturbed(model: &Model, seed: u64) -> Model {
     let mut random = fastrand::Rng::with_seed(seed);
     let mut other = model.clone();
     for link in &mut other.links {

@@ -85,17 +85,7 @@ fn ordinary_least_squares_agree_with_a_dense_solver() {
     let dense = all.select_columns(&base.independent);
     let expected = dense.svd(true, true).solve(&right, 1e-12).unwrap();
     for (found, expected) in found.solution.beta.iter().zip(expected.iter()) {
-        assert!((found - expected).abs() < EXACT * expected.amax_one(), "{found} {expected}");
-    }
-}
-
-trait AtLeastOne {
-    fn amax_one(&self) -> f64;
-}
-
-impl AtLeastOne for f64 {
-    fn amax_one(&self) -> f64 {
-        self.abs().max(1.0)
+        assert!((found - expected).abs() < EXACT * expected.abs().max(1.0), "{found} {expected}");
     }
 }
 

@@ -127,7 +127,7 @@ fn rules_report_exactly_the_marked_lines() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// A mark with an unknown rule would never be checked.
+/// The marks in a fixture of an unknown rule would never be checked.
 #[test]
 fn fixture_names_start_with_the_code_of_a_rule() {
     for fixture in fixtures() {

@@ -23,8 +23,8 @@ impl PlantedFault {
     }
 }
 
-/// All plants. A file has a module with its own `main` for each; the lines of the other modules are
-/// empty.
+/// All planted faults and near misses. A file has a module with its own `main` for each; the lines
+/// of the other modules are empty.
 pub(crate) fn planted_faults() -> Vec<PlantedFault> {
     let folder = "fixtures/lint/plants";
     let shared = fs::read_to_string(format!("{folder}/Shared.mod")).unwrap();
@@ -69,7 +69,7 @@ fn planted_faults_are_found_and_near_misses_are_not() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Fails for a removed rule, or a new one without plants; `tests/lint_command.rs` has the plants of
+/// Fails for a removed rule, or a new one without planted faults; `tests/lint_command.rs` has those of
 /// rules for backups.
 #[test]
 fn each_rule_has_planted_faults_and_near_misses() {
@@ -81,7 +81,7 @@ fn each_rule_has_planted_faults_and_near_misses() {
     for rule in ALL.iter().filter(|rule| rule.needs != Needs::Backup) {
         for fires in [true, false] {
             let count = counts.get(&(rule.code.to_owned(), fires)).copied().unwrap_or(0);
-            assert!(count >= EACH, "{}: {count} plants that fire: {fires}", rule.code);
+            assert!(count >= EACH, "{}: {count} programs that fire: {fires}", rule.code);
         }
     }
     let backup = ALL.iter().filter(|rule| rule.needs == Needs::Backup).map(|rule| rule.code);

@@ -20,16 +20,16 @@ fn cycle(fixture: &Fixture) -> (f64, f64) {
     (cycle.account.total.energy_j(), cycle.simulation.cycle_s)
 }
 
-fn with(fixture: &Fixture, finding: &Finding) -> Fixture {
+fn with_change(fixture: &Fixture, finding: &Finding) -> Fixture {
     let edits = finding.fix.as_ref().map(|fix| fix.edits.clone());
-    let edits = edits.unwrap_or_else(|| vec![by_hand(fixture, finding)]);
+    let edits = edits.unwrap_or_else(|| vec![manual_change(fixture, finding)]);
     let file = &fixture.files[0];
     let bytes = apply(&file.bytes, &edits).unwrap();
     fixture.with_text(String::from_utf8(bytes).unwrap())
 }
 
 /// The change that the message proposes, as a reader would make it.
-fn by_hand(fixture: &Fixture, finding: &Finding) -> Edit {
+fn manual_change(fixture: &Fixture, finding: &Finding) -> Edit {
     let file = &fixture.files[0];
     let span = finding.span;
     let statement = file.text(span).into_owned();
@@ -73,7 +73,7 @@ fn savings_agree_with_two_simulations() {
         let (energy, time) = cycle(&fixture);
         for finding in fixture.report().findings {
             let Some(saving) = finding.saving else { continue };
-            let (energy_after, time_after) = cycle(&with(&fixture, &finding));
+            let (energy_after, time_after) = cycle(&with_change(&fixture, &finding));
             let spared = energy - energy_after;
             let off = (spared - saving.energy_j).abs();
             let reported = finding.full_message();

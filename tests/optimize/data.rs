@@ -168,7 +168,7 @@ fn short_parts_of_a_path_are_solved() {
         let path = arm::Path::random(seed);
         for share in [1e-4, 1e-3, 1e-2, 0.1] {
             let s: Vec<f64> = arm::rest_to_rest_nodes(share * path.length, 40);
-            let grid = arm::with_turns(&path, s, 1.0);
+            let grid = arm::with_reversals(&path, s, 1.0);
             let fastest = time_optimal(&grid, &limits).into_profile().unwrap();
             let time = 1.3 * fastest.duration();
             let outcome = arm::least_energy(&grid, &limits, &MODEL, &fastest, time);

@@ -135,7 +135,7 @@ fn dense_ends_halve_the_loss_of_a_coarse_grid() {
         let path = arm::Path::random(seed);
         let fine = optimal(&arm::grid(&path, 3000, 1.0), &arm::limits()).duration();
         let equal = (0..=100).map(|k| path.length * f64::from(k) / 100.0).collect();
-        let grids = [arm::with_turns(&path, equal, 1.0), arm::grid(&path, 100, 1.0)];
+        let grids = [arm::with_reversals(&path, equal, 1.0), arm::grid(&path, 100, 1.0)];
         for (excess, grid) in excess.iter_mut().zip(&grids) {
             excess.push(optimal(grid, &arm::limits()).duration() / fine - 1.0);
         }
