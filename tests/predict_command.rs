@@ -83,10 +83,10 @@ fn logs_of_seven_joints_may_have_any_form_of_csv() {
     let model = from_toml(SEVEN, &fs::read_to_string(SEVEN).unwrap()).unwrap();
     let degrees = |x: f64| format!("{}", x.to_degrees());
     let comma = |x: f64| format!("{x}").replace('.', ",");
-    let plain = written(&folder, "plain.csv", &log_of_seven(",", "", |x| x.to_string()));
-    let excel = written(&folder, "excel.csv", &log_of_seven(";", "", comma));
+    let plain = written(&folder, "plain.csv", log_of_seven(",", "", |x| x.to_string()));
+    let excel = written(&folder, "excel.csv", log_of_seven(";", "", comma));
     let tabs = log_of_seven("\t", "", |x| x.to_string()).replace('\n', "\r\n");
-    let tabs = written(&folder, "tabs.txt", &format!("\u{feff}{tabs}"));
+    let tabs = written(&folder, "tabs.txt", format!("\u{feff}{tabs}"));
     // Only angles have degrees; the time is unchanged.
     let turned = log_of_seven(",", "_deg", degrees);
     let turned: Vec<String> = turned
@@ -98,7 +98,7 @@ fn logs_of_seven_joints_may_have_any_form_of_csv() {
             format!("{t},{rest}")
         })
         .collect();
-    let turned = written(&folder, "degrees.csv", &turned.join("\n"));
+    let turned = written(&folder, "degrees.csv", turned.join("\n"));
     let wide: Vec<u8> = format!("\u{feff}{}", fs::read_to_string(&plain).unwrap())
         .encode_utf16()
         .flat_map(u16::to_le_bytes)
@@ -167,7 +167,7 @@ fn positions_alone_are_sufficient() {
 #[test]
 fn predicted_torques_contain_sensor_effects() {
     let folder = tempfile::tempdir().unwrap();
-    let motion = written(&folder, "motion.csv", &log_of_seven(",", "", |x| x.to_string()));
+    let motion = written(&folder, "motion.csv", log_of_seven(",", "", |x| x.to_string()));
     let seven = fs::canonicalize(SEVEN).unwrap();
     let overlay = |effects: &str| {
         let text = format!("extends = \"{}\"\nname = \"x\"\n{effects}", seven.display());
@@ -256,7 +256,7 @@ fn bad_rows_are_named_and_left_out() {
     assert!(log.column(Channel::Power).is_none());
 
     let folder = tempfile::tempdir().unwrap();
-    let path = written(&folder, "bad.csv", &lines.join("\n"));
+    let path = written(&folder, "bad.csv", lines.join("\n"));
     let output = predict(SEVEN, &path, &[]);
     assert_eq!(table(&stdout(&output)).1.len(), 12);
     assert!(stderr(&output).contains("row 3 left out"));

@@ -499,7 +499,7 @@ fn imported_robots_can_be_used_and_extended() {
 #[test]
 fn wrong_files_give_exit_code_2_and_one_message() {
     let folder = tempfile::tempdir().unwrap();
-    let urdf = written(&folder, "arm.urdf", &arm().replace("value=\"2\"", "value=\"-2\""));
+    let urdf = written(&folder, "arm.urdf", arm().replace("value=\"2\"", "value=\"-2\""));
     let cut = written(&folder, "MOC.cfg", &configuration()[..700]);
     let unit =
         written(&folder, "unit.toml", "extends = \"IRB140\"\n[limits]\ntcp_speed_mm = 250\n");

@@ -81,14 +81,14 @@ pub(crate) fn log(model: &Model, csv: &str, robot: &RealRobot) -> Log {
 }
 
 /// The samples in two parts of a log: for training and held out.
-pub(crate) fn split(model: &Model, log: &Log, parts: [Range<usize>; 2]) -> [Samples; 2] {
-    let samples = |range: &Range<usize>, hints| {
-        let log = log.of_rows(&range.clone().collect::<Vec<_>>());
+pub(crate) fn split(model: &Model, log: &Log, [first, last]: [Range<usize>; 2]) -> [Samples; 2] {
+    let samples = |range: Range<usize>, hints| {
+        let log = log.of_rows(&range.collect::<Vec<_>>());
         prepare(&log, &torques(model, &log).unwrap().tau, hints).unwrap()
     };
-    let training = samples(&parts[0], Hints::default());
+    let training = samples(first, Hints::default());
     let Source::Filtered { cutoff } = training.source else { panic!("{:?}", training.source) };
-    let held_out = samples(&parts[1], Hints { period: None, cutoff: Some(cutoff) });
+    let held_out = samples(last, Hints { period: None, cutoff: Some(cutoff) });
     [training, held_out]
 }
 
