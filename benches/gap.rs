@@ -26,13 +26,13 @@ fn bench(criterion: &mut Criterion) {
         // Diagnoses of program runs do not include torque effects.
         let is_run = |case: &Case| case.files.iter().any(|(name, _)| name.contains('/'));
         let case = cases.find(|case| case.label.kind == kind && !is_run(case)).unwrap();
-        let of = examined(&case, &settings);
-        let settings = gap::Settings { trust: of.trust, effects: ALL.iter().collect() };
+        let input = examined(&case, &settings);
+        let settings = gap::Settings { trust: input.trust, effects: ALL.iter().collect() };
         group.bench_function(format!("diagnose_{}", kind.name()), |bencher| {
             bencher.iter(|| {
-                let train = records(black_box(&of.nominal), &of.train);
-                let heldout = records(&of.nominal, &of.heldout);
-                gap::diagnose(&of.nominal, train, &heldout, &settings)
+                let train = records(black_box(&input.nominal), &input.train);
+                let heldout = records(&input.nominal, &input.heldout);
+                gap::diagnose(&input.nominal, train, &heldout, &settings)
             });
         });
     }

@@ -1,33 +1,21 @@
 //! The virtual controller: the shipped cell, and the time as a function of the movements.
 #![expect(clippy::unwrap_used, reason = "a failed set-up stops the bench")]
 
+#[path = "../tests/support/mod.rs"]
+mod support;
+
 use std::fmt::Write;
-use std::path::Path;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use joulepath::arm::robot;
-use joulepath::rapid::text::{FileId, SourceFile};
 use joulepath::retime::energy::account;
 use joulepath::retime::motion::{Options, simulate};
-use joulepath::tool::retrofit::{Source, read_program};
-
-fn sources(folder: &str) -> Vec<Source> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
-    let mut paths: Vec<_> =
-        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    paths.sort();
-    let source = |(i, path): (usize, &std::path::PathBuf)| {
-        let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        let file = SourceFile::new(FileId(i as u32), name.clone(), std::fs::read(path).unwrap());
-        Source { file, relative: name }
-    };
-    paths.iter().enumerate().map(source).collect()
-}
+use joulepath::tool::retrofit::read_program;
+use support::{irb1600, modules, program};
 
 /// Throughput: simulated milliseconds ("elements") per second of computing time.
 fn pick_place(c: &mut Criterion) {
-    let model = robot::find("IRB1600-10/1.45").unwrap();
-    let files = sources("fixtures/pick_place");
+    let model = irb1600();
+    let files = modules("pick_place");
     let (program, entry) = read_program(&files, "main").unwrap();
     let options = Options::default();
     let cycle = simulate(&program, entry, &model, &options).cycle_s;
@@ -41,7 +29,7 @@ fn pick_place(c: &mut Criterion) {
 }
 
 fn movements(c: &mut Criterion) {
-    let model = robot::find("IRB1600-10/1.45").unwrap();
+    let model = irb1600();
     let mut group = c.benchmark_group("simulate movements");
     group.sample_size(10);
     for count in [100_u32, 1_000, 10_000] {
@@ -63,9 +51,7 @@ fn movements(c: &mut Criterion) {
             .unwrap();
         }
         text.push_str("ENDPROC\nENDMODULE\n");
-        let file = SourceFile::new(FileId(0), "M.mod".into(), text.into_bytes());
-        let files = [Source { file, relative: "M.mod".into() }];
-        let (program, entry) = read_program(&files, "main").unwrap();
+        let (program, entry) = read_program(&program(text), "main").unwrap();
         group.throughput(Throughput::Elements(u64::from(count)));
         group.bench_with_input(BenchmarkId::from_parameter(count), &count, |b, _| {
             b.iter(|| account(&model, &simulate(&program, entry, &model, &Options::default())));

@@ -22,7 +22,7 @@ const CASES: usize = 24;
 const MOTIONS: usize = 4;
 
 /// Residuals of a model: relative torque, power \[W\], relative energy.
-struct Missed {
+struct Residuals {
     torque: f64,
     power: f64,
     energy: f64,
@@ -42,13 +42,14 @@ fn main() {
         if case.label.kind != Kind::One {
             continue;
         }
-        let of = examined(&case, &settings);
-        let options = gap::Settings { trust: of.trust, effects: ALL.iter().collect() };
-        let heldout = records(&of.nominal, &of.heldout);
-        let found = diagnose(&of.nominal, records(&of.nominal, &of.train), &heldout, &options);
-        let named: Vec<&str> = found.effects.iter().map(|said| said.effect.id).collect();
-        let [before, after] = [&of.nominal, &found.improved.applied]
-            .map(|model| missed(model, &of.nominal, &motions, &settings));
+        let input = examined(&case, &settings);
+        let options = gap::Settings { trust: input.trust, effects: ALL.iter().collect() };
+        let heldout = records(&input.nominal, &input.heldout);
+        let found =
+            diagnose(&input.nominal, records(&input.nominal, &input.train), &heldout, &options);
+        let named: Vec<&str> = found.effects.iter().map(|asserted| asserted.effect.id).collect();
+        let [before, after] = [&input.nominal, &found.improved.applied]
+            .map(|model| residuals(model, &input.nominal, &motions, &settings));
         println!(
             "{number:>4}  {:<20} {:<20} {:>6.2} → {:<6.2} {:>7.1} → {:<7.1} {:>6.2} → {:<6.2}",
             case.label.effects[0].id,
@@ -64,14 +65,19 @@ fn main() {
 }
 
 /// Residuals of a model for the robot's true torques and power.
-fn missed(model: &Model, nominal: &Model, motions: &[Unlogged], settings: &Settings) -> Missed {
+fn residuals(
+    model: &Model,
+    nominal: &Model,
+    motions: &[Unlogged],
+    settings: &Settings,
+) -> Residuals {
     let logs = noiseless(motions, settings);
     let (mut torque, mut size) = (vec![0.0; model.dof], vec![0.0; model.dof]);
     for record in records(nominal, &logs) {
-        let said = predicted(&record, model);
+        let predictions = predicted(&record, model);
         for joint in 0..model.dof {
-            for (measured, said) in record.measured[joint].iter().zip(&said[joint]) {
-                torque[joint] += (measured - said).powi(2);
+            for (measured, predicted) in record.measured[joint].iter().zip(&predictions[joint]) {
+                torque[joint] += (measured - predicted).powi(2);
                 size[joint] += measured * measured;
             }
         }
@@ -85,14 +91,14 @@ fn missed(model: &Model, nominal: &Model, motions: &[Unlogged], settings: &Setti
                 [&of.q, &of.qd, &of.qdd].map(|x| x.iter().map(|x| x[row]).collect());
             let state: [&[f64]; 3] = [&q, &qd, &qdd];
             let power = power_at(model, &mut data, &Load::none(), state);
-            let said = supply_w(model, &mut data, &Load::none(), state, &power);
-            squares += (measured - said).powi(2);
+            let predicted = supply_w(model, &mut data, &Load::none(), state, &power);
+            squares += (measured - predicted).powi(2);
             rows += 1.0;
             energies[0] += measured;
-            energies[1] += said;
+            energies[1] += predicted;
         }
     }
-    Missed {
+    Residuals {
         torque: (relative / model.dof as f64).sqrt(),
         power: f64::sqrt(squares / rows),
         energy: (energies[1] / energies[0] - 1.0).abs(),

@@ -13,7 +13,6 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use cases::{Case, EASY};
-use joulepath::retime::energy::EnergyParts;
 use joulepath::retime::motion::controller::motion_limits;
 use joulepath::retime::motion::sampling::{Loaded, SpeedCap};
 use joulepath::retime::motion::stream::{Joints, Stream};
@@ -26,7 +25,7 @@ use joulepath::retime::optimize::freedom::{Bound, Freedom};
 use joulepath::retime::optimize::path_grid;
 use joulepath::retime::optimize::plant::{Plant, realise};
 use joulepath::retime::optimize::polish_problem::PathPenalty;
-use joulepath::retime::optimize::retime::{Goal, Task, retime};
+use joulepath::retime::optimize::retime::{Goal, retime};
 use joulepath::retime::optimize::robot_plant::{smooth_torque, smooth_torque_derivatives};
 use joulepath::retime::optimize::stream_fit::{StreamFit, fit_stream};
 use joulepath::retime::optimize::stream_limits::StreamLimits;
@@ -152,7 +151,7 @@ fn path(case: &Case) -> Value {
             "energy_s": energy_s,
         }));
     }
-    json!({ "name": case.name, "sizes": sizes, "free": free(case, &limits, &caps) })
+    json!({ "name": case.name, "sizes": sizes, "free": free_stream(case, &limits, &caps) })
 }
 
 /// Input of the peers: the nodes and the path at these.
@@ -171,16 +170,7 @@ fn fastest_stream(case: &Case) -> Option<Value> {
     let nodes = path_grid::nodes(&case.model, path, &caps, JERK_INTERVALS);
     let grid = path_grid::grid(loaded, path, &nodes, &caps).ok()?;
     let freedom = Freedom { joints: Bound::Robot, ..Freedom::none() };
-    let task = Task {
-        model: &case.model,
-        run,
-        energy_before: EnergyParts::default(),
-        spacing_s: 0.05,
-        closest_s: 0.04,
-        freedom: &freedom,
-        cost: Cost::Electrical,
-    };
-    let stream = retime(&task, Goal::Fastest).ok()?;
+    let stream = retime(&case.task(&freedom), Goal::Fastest).ok()?;
     let ends = grid.ends();
     let nodes: Vec<_> = ends.iter().map(|pair| pair[0]).chain(ends.last().map(|p| p[1])).collect();
     Some(json!({
@@ -194,7 +184,7 @@ fn fastest_stream(case: &Case) -> Option<Value> {
 }
 
 /// A stream that may leave its path, from the slowed fastest profile.
-fn free(case: &Case, limits: &PathLimits, caps: &[SpeedCap]) -> Value {
+fn free_stream(case: &Case, limits: &PathLimits, caps: &[SpeedCap]) -> Value {
     let path = case.path().unwrap();
     let loaded = Loaded { model: &case.model, load: &case.run().load };
     let nodes = path_grid::nodes(&case.model, path, caps, SIZES[0]);

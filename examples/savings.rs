@@ -10,7 +10,6 @@ mod cases;
 mod support;
 
 use cases::{Case, EASY, Kind};
-use joulepath::retime::energy::EnergyParts;
 use joulepath::retime::energy::power::motion_energy;
 use joulepath::retime::motion::controller::motion_limits;
 use joulepath::retime::motion::sampling::{Loaded, SpeedCap};
@@ -24,7 +23,7 @@ use joulepath::retime::optimize::energy_program::{energy_bound, minimize_energy}
 use joulepath::retime::optimize::freedom::{Bound, Freedom};
 use joulepath::retime::optimize::path_energy::evaluate;
 use joulepath::retime::optimize::path_grid;
-use joulepath::retime::optimize::retime::{Goal, Task, retime};
+use joulepath::retime::optimize::retime::{Goal, retime};
 use joulepath::retime::path::joint_path::DOF;
 use rayon::prelude::*;
 
@@ -50,11 +49,11 @@ fn main() {
     let cases = cases::cases(&EASY, COUNT);
     for factor in FACTORS {
         let all: Vec<Saving> = cases.par_iter().filter_map(|case| saving(case, factor)).collect();
-        let of = |f: &dyn Fn(&Saving) -> f64| quartiles(all.iter().map(f).collect());
+        let spread = |f: &dyn Fn(&Saving) -> f64| quartiles(all.iter().map(f).collect());
         println!("{factor} × the least time, {} paths:", all.len());
-        println!("  uniform slowing   {}", of(&|s| 100.0 * s.uniform));
-        println!("  optimal profile   {}", of(&|s| 100.0 * s.optimal));
-        println!("  gap of the bound  {}", of(&|s| 100.0 * s.gap));
+        println!("  uniform slowing   {}", spread(&|s| 100.0 * s.uniform));
+        println!("  optimal profile   {}", spread(&|s| 100.0 * s.optimal));
+        println!("  gap of the bound  {}", spread(&|s| 100.0 * s.gap));
         let streams: Vec<(f64, f64)> =
             all.iter().filter_map(|s| Some((s.realised?, s.optimal))).collect();
         println!("  streams           {} of {}", streams.len(), all.len());
@@ -64,11 +63,12 @@ fn main() {
         println!("  share realised    {}", quartiles(share));
     }
     let joint: Vec<&Case> = cases.iter().filter(|case| case.kind == Kind::EasyJoint).collect();
-    let ratios: Vec<f64> = joint.par_iter().filter_map(|case| lateness(case)).collect();
+    let ratios: Vec<f64> =
+        joint.par_iter().filter_map(|case| ratio_with_jerk_limit(case)).collect();
     println!("time of the fastest stream over the least with its jerk, {} moves:", ratios.len());
     println!("                    {}", quartiles(ratios));
     let others = cases.par_iter().filter(|case| case.kind != Kind::EasyJoint);
-    let ratios: Vec<f64> = others.filter_map(slowness).collect();
+    let ratios: Vec<f64> = others.filter_map(ratio_without_jerk_limit).collect();
     println!("and over the least without a limit on jerk, {} lines and blends:", ratios.len());
     println!("                    {}", quartiles(ratios));
 }
@@ -83,18 +83,6 @@ fn quartiles(mut values: Vec<f64>) -> String {
     let row: Vec<String> =
         [0.0, 0.25, 0.5, 0.75, 1.0].iter().map(|share| format!("{:8.3}", at(*share))).collect();
     row.join(" ")
-}
-
-fn task<'a>(case: &'a Case, freedom: &'a Freedom) -> Task<'a> {
-    Task {
-        model: &case.model,
-        run: case.run(),
-        energy_before: EnergyParts::default(),
-        spacing_s: 0.05,
-        closest_s: 0.04,
-        freedom,
-        cost: Cost::Electrical,
-    }
 }
 
 /// The fastest profile on the path of a case without a jerk limit, with grid and limits.
@@ -113,10 +101,10 @@ fn fastest(case: &Case) -> Option<(PathGrid, PathLimits, Profile)> {
 
 /// Duration of the fastest stream over the least one on its path without a jerk limit: an upper
 /// bound of the cost of the jerk limit.
-fn slowness(case: &Case) -> Option<f64> {
+fn ratio_without_jerk_limit(case: &Case) -> Option<f64> {
     let least = fastest(case)?.2.duration();
     let freedom = Freedom { joints: Bound::Robot, ..Freedom::none() };
-    let stream = retime(&task(case, &freedom), Goal::Fastest).ok()?;
+    let stream = retime(&case.task(&freedom), Goal::Fastest).ok()?;
     (least > SHORTEST).then(|| (stream.duration_s - case.run().settling) / least)
 }
 
@@ -132,7 +120,7 @@ fn saving(case: &Case, factor: f64) -> Option<Saving> {
     let best = minimize_energy(&grid, &limits, &model, &fastest, time, bound.as_ref());
     let best = best.into_optimum()?;
     let freedom = Freedom { joints: Bound::Robot, ..Freedom::none() };
-    let stream = retime(&task(case, &freedom), Goal::Exactly(time + run.settling)).ok();
+    let stream = retime(&case.task(&freedom), Goal::Exactly(time + run.settling)).ok();
     let realised = stream.map(|retiming| {
         let duration = retiming.stream.duration();
         let motion = TimedMotion::Stream(retiming.stream);
@@ -149,7 +137,7 @@ fn saving(case: &Case, factor: f64) -> Option<Saving> {
 
 /// Duration of the fastest stream of a joint move over the largest least duration of its single
 /// joints with limits on speed, acceleration and jerk: a lower bound of any synchronous motion.
-fn lateness(case: &Case) -> Option<f64> {
+fn ratio_with_jerk_limit(case: &Case) -> Option<f64> {
     let run = case.run();
     let limits = &case.model.limits;
     let (v, a, jerk) =
@@ -158,7 +146,7 @@ fn lateness(case: &Case) -> Option<f64> {
         .map(|j| seven_segments((run.end[j] - run.start[j]).abs(), v[j], a[j], jerk[j]))
         .fold(0.0, f64::max);
     let freedom = Freedom { joints: Bound::Robot, ..Freedom::none() };
-    let fastest = retime(&task(case, &freedom), Goal::Fastest).ok()?;
+    let fastest = retime(&case.task(&freedom), Goal::Fastest).ok()?;
     (least > SHORTEST).then(|| (fastest.duration_s - run.settling) / least)
 }
 

@@ -72,14 +72,14 @@ fn is_held((claim, achieved): &(Interval, f64)) -> bool {
 fn held(settings: &Settings, number: usize) -> Option<(usize, Held, bool)> {
     let motions = blind::unlogged(settings, number, MOTIONS)?;
     let case = blind::case(settings, number).filter(|case| case.label.kind != Kind::Power)?;
-    let of = examined(&case, settings);
+    let input = examined(&case, settings);
     let effects = case.label.effects.iter().filter_map(|truth| find(&truth.id)).collect();
-    let options = gap::Settings { trust: of.trust, effects };
-    let heldout = records(&of.nominal, &of.heldout);
-    let found = diagnose(&of.nominal, records(&of.nominal, &of.train), &heldout, &options);
-    let models = [&of.nominal, &found.refit.applied, &found.improved.applied];
+    let options = gap::Settings { trust: input.trust, effects };
+    let heldout = records(&input.nominal, &input.heldout);
+    let found = diagnose(&input.nominal, records(&input.nominal, &input.train), &heldout, &options);
+    let models = [&input.nominal, &found.refit.applied, &found.improved.applied];
     let logs = noiseless(&motions, settings);
-    let [nominal, refit, improved] = squares(&records(&of.nominal, &logs), models);
+    let [nominal, refit, improved] = squares(&records(&input.nominal, &logs), models);
     let shrink = |before: f64| if before > 0.0 { 1.0 - (improved / before).sqrt() } else { 0.0 };
     let claims = [(found.shrink.total, shrink(nominal)), (found.shrink.by_effect, shrink(refit))];
     Some((number, claims, !found.effects.is_empty()))
@@ -91,7 +91,7 @@ fn squares(records: &[Record<'_>], models: [&Model; 3]) -> [f64; 3] {
     let (mut missed, mut size) = (vec![[0.0; 3]; n], vec![0.0; n]);
     for record in records {
         let is_known = beside_no_jump(record);
-        let said = models.map(|model| predicted(record, model));
+        let predictions = models.map(|model| predicted(record, model));
         for joint in 0..n {
             for row in (0..record.motion.rows()).filter(|row| is_known[*row]) {
                 if !record.moves(joint, row) {
@@ -99,15 +99,15 @@ fn squares(records: &[Record<'_>], models: [&Model; 3]) -> [f64; 3] {
                 }
                 let measured = record.measured[joint][row];
                 size[joint] += measured * measured;
-                for (sum, said) in missed[joint].iter_mut().zip(&said) {
-                    *sum += (measured - said[joint][row]).powi(2);
+                for (sum, predicted) in missed[joint].iter_mut().zip(&predictions) {
+                    *sum += (measured - predicted[joint][row]).powi(2);
                 }
             }
         }
     }
-    let of = |k: usize| {
+    let relative = |k: usize| {
         let joints = missed.iter().zip(&size).filter(|(_, size)| **size > 0.0);
         joints.map(|(missed, size)| missed[k] / size).sum()
     };
-    [of(0), of(1), of(2)]
+    [relative(0), relative(1), relative(2)]
 }

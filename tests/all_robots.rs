@@ -3,11 +3,12 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
+mod command;
+
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::Write as _;
-use std::path::Path;
-use std::process::{Command, Output};
 
+use command::{joulepath, module, stderr, stdout, written};
 use joulepath::arm::kinematics::{fk, limits_ok};
 use joulepath::arm::robot::{Model, find, load, names};
 use rayon::prelude::*;
@@ -100,47 +101,40 @@ ENDMODULE
     text
 }
 
-fn joulepath(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_joulepath")).args(arguments).output().unwrap()
-}
-
 /// One of this many robots runs the slow commands.
 const ONE_IN: usize = 6;
 
 /// Errors of the commands with a robot.
 fn faults(model: &Model, robot: &str, slow: bool) -> Vec<String> {
-    let folder = TempDir::new().unwrap();
-    let path = folder.path().join("generated.mod");
-    std::fs::write(&path, program(model)).unwrap();
-    let out = folder.path().join("out");
-    let excitation = folder.path().join("excitation");
-    let [path, out, excitation] = [&path, &out, &excitation].map(|p| p.to_str().unwrap());
+    let (folder, path) = module(program(model));
+    let [out, excitation] =
+        ["out", "excitation"].map(|name| folder.path().join(name).display().to_string());
     let common = ["--robot", robot, "--format", "json", "--quiet"];
     let with = |own: &[&str]| joulepath(&[own, &common[..]].concat());
     let mut runs = vec![
-        ("simulate", with(&["simulate", path]), "energy_interval_j"),
-        ("lint", with(&["lint", path]), "cycle_energy_j"),
-        ("standstill", with(&["standstill", path]), "holding_interval_w"),
+        ("simulate", with(&["simulate", &path]), "energy_interval_j"),
+        ("lint", with(&["lint", &path]), "cycle_energy_j"),
+        ("standstill", with(&["standstill", &path]), "holding_interval_w"),
     ];
     if slow {
         let small = ["--cycles", "2", "--harmonics", "1,3", "--spacing", "0.1"];
-        let design = with(&[&["excite", "--out", excitation], &small[..]].concat());
+        let design = with(&[&["excite", "--out", &excitation], &small[..]].concat());
         runs.push(("excite", design, "condition"));
-        let optimized = with(&["optimize", path, "--out", out]);
+        let optimized = with(&["optimize", &path, "--out", &out]);
         runs.push(("optimize", optimized, "saving_interval_percent"));
     }
     let mut faults = Vec::new();
     for (command, output, key) in runs {
         // The exit code of `lint` reports findings.
         let code = output.status.code();
-        let text = String::from_utf8_lossy(&output.stdout);
+        let text = stdout(&output);
         let done = code == Some(0) || (command == "lint" && code == Some(1));
         let value = text.split(&format!("\"{key}\":")).nth(1).unwrap_or("null").trim_start();
         // Infinite and undefined numbers are null in JSON.
         let first = value.trim_start_matches(['[', ' ', '\n']);
         if !done || first.starts_with("null") {
-            let said = String::from_utf8_lossy(&output.stderr);
-            faults.push(format!("{} {command}: {code:?} {said}", model.name));
+            let message = stderr(&output);
+            faults.push(format!("{} {command}: {code:?} {message}", model.name));
         }
     }
     faults
@@ -193,10 +187,7 @@ fn an_arm_of_a_urdf_without_inertias_runs_each_command() {
     }
     text += "</robot>";
     let folder = TempDir::new().unwrap();
-    let path = folder.path().join("arm.urdf");
-    std::fs::write(&path, text).unwrap();
-    let path: &Path = &path;
-    let path = path.to_str().unwrap();
-    let faults = faults(&load(path).unwrap(), path, true);
+    let path = written(&folder, "arm.urdf", text);
+    let faults = faults(&load(&path).unwrap(), &path, true);
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }

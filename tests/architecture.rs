@@ -72,7 +72,7 @@ fn is_page(name: &str) -> bool {
 }
 
 #[test]
-fn named_files_exist() {
+fn files_named_in_the_documentation_exist() {
     let mut missing = Vec::new();
     for path in PAGES {
         let text = page(path);
@@ -89,7 +89,7 @@ fn named_files_exist() {
 }
 
 #[test]
-fn every_folder_has_its_place_on_the_map() {
+fn the_code_map_lists_every_source_folder() {
     let text = page("docs/architecture.md");
     let map = &text[text.find("## Code map").unwrap()..];
     for entry in fs::read_dir("src").unwrap() {
@@ -103,7 +103,7 @@ fn every_folder_has_its_place_on_the_map() {
 
 /// The third column of the glossary names existing items.
 #[test]
-fn terms_of_the_glossary_are_used() {
+fn code_names_in_the_glossary_exist() {
     let sources = rust_source::files(&["src"]);
     let names: BTreeSet<&str> =
         sources.iter().flat_map(|file| tokens(&file.text)).map(|token| token.text).collect();

@@ -1,16 +1,13 @@
 //! Controller backups through the binary: selected task and messages.
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
-use std::collections::BTreeMap;
+mod command;
+
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
 
+use command::{files, joulepath, parsed, refused, run, stderr};
 use serde_json::Value;
-
-fn joulepath(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_joulepath")).args(args).output().unwrap()
-}
 
 /// The fixture without the configuration in its parent folders.
 fn backup() -> tempfile::TempDir {
@@ -33,16 +30,14 @@ fn copy(from: &Path, to: &Path) {
 
 /// Executed instructions, and the notes.
 fn simulated(path: &Path) -> (Vec<String>, String) {
-    let output = joulepath(&["simulate", path.to_str().unwrap(), "--format", "json"]);
-    let notes = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.success(), "{notes}");
-    let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let output = run(&["simulate", path.to_str().unwrap(), "--format", "json"]);
+    let (notes, value) = (stderr(&output), parsed(&output));
     let moves = value["moves"].as_array().unwrap().iter();
     (moves.map(|step| step["instruction"].as_str().unwrap().to_owned()).collect(), notes)
 }
 
 #[test]
-fn the_task_that_moves_the_robot_is_run_with_the_robot_of_the_backup() {
+fn a_backup_runs_its_motion_task_with_its_own_robot() {
     let backup = backup();
     let (moves, notes) = simulated(backup.path());
     assert_eq!(moves, ["MoveAbsJ", "MoveJ", "MoveL", "MoveL", "MoveAbsJ"]);
@@ -55,7 +50,7 @@ fn the_task_that_moves_the_robot_is_run_with_the_robot_of_the_backup() {
 }
 
 #[test]
-fn several_motion_tasks_are_stated_with_the_way_to_choose() {
+fn several_motion_tasks_cause_a_note_that_names_them() {
     let backup = backup();
     let system = backup.path().join("SYSPAR/SYS.cfg");
     let text = fs::read_to_string(&system).unwrap();
@@ -71,36 +66,31 @@ fn several_motion_tasks_are_stated_with_the_way_to_choose() {
 }
 
 #[test]
-fn several_backups_are_not_one_program() {
+fn several_backups_in_one_folder_cannot_be_simulated() {
     let folder = tempfile::tempdir().unwrap();
     for name in ["monday", "tuesday"] {
         copy(Path::new("fixtures/backup"), &folder.path().join(name));
     }
     let path = folder.path().to_str().unwrap();
-    let output = joulepath(&["simulate", path]);
-    let error = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(error.contains("monday") && error.contains("tuesday"), "{error}");
+    let error = refused(&["simulate", path], "monday");
+    assert!(error.contains("tuesday"), "{error}");
     // Reading them is no problem.
     assert_eq!(joulepath(&["parse", path]).status.code(), Some(0));
 }
 
 #[test]
-fn a_robot_that_is_not_known_is_named() {
+fn an_unknown_robot_of_a_backup_is_named_in_the_error() {
     let backup = backup();
     let motion = backup.path().join("SYSPAR/MOC.cfg");
     let text = fs::read_to_string(&motion).unwrap();
     fs::write(&motion, text.replace("ROB1_1600_1.45_10", "ROB1_9999_1.0_5")).unwrap();
-    let output = joulepath(&["simulate", backup.path().to_str().unwrap()]);
-    let error = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(error.contains("ROB1_9999_1.0_5") && error.contains("--robot"), "{error}");
+    let error = refused(&["simulate", backup.path().to_str().unwrap()], "ROB1_9999_1.0_5");
+    assert!(error.contains("--robot"), "{error}");
 }
 
 #[test]
-fn parse_reads_every_task_and_tells_what_the_backup_says() {
-    let output = joulepath(&["parse", "fixtures/backup", "--format", "json"]);
-    let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+fn parse_reads_every_task_and_lists_robot_and_version() {
+    let value = parsed(&joulepath(&["parse", "fixtures/backup", "--format", "json"]));
     let field = |file: &Value, key: &str| file[key].as_str().unwrap_or_default().to_owned();
     let files = value["files"].as_array().unwrap();
     let tasks: Vec<String> = files.iter().map(|file| field(file, "task")).collect();
@@ -110,21 +100,6 @@ fn parse_reads_every_task_and_tells_what_the_backup_says() {
     let tasks = value["backups"][0]["tasks"].as_array().unwrap();
     assert_eq!(field(&tasks[1], "robot"), "ROB1_1600_1.45_10");
     assert_eq!(value["backups"][0]["robotware"], "6.08.01.00");
-}
-
-/// All files below a folder with their relative paths.
-fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut found = BTreeMap::new();
-    for entry in fs::read_dir(folder).unwrap().map(Result::unwrap) {
-        let name = entry.file_name().into_string().unwrap();
-        if entry.file_type().unwrap().is_dir() {
-            let below = files(&entry.path()).into_iter();
-            found.extend(below.map(|(path, bytes)| (format!("{name}/{path}"), bytes)));
-        } else {
-            found.insert(name, fs::read(entry.path()).unwrap());
-        }
-    }
-    found
 }
 
 /// The task lists the new module; every other byte is unchanged.
@@ -140,7 +115,7 @@ const INFO: &str = "BACKINFO/backinfo.txt";
 const NEW: &str = "RAPID/TASK2/PROGMOD/Joulepath.mod";
 
 #[test]
-fn the_retrofit_of_a_backup_is_the_whole_backup() {
+fn the_output_for_a_backup_is_a_complete_backup() {
     for end in ["\n", "\r\n"] {
         let backup = backup();
         let info = backup.path().join(INFO);
@@ -150,8 +125,7 @@ fn the_retrofit_of_a_backup_is_the_whole_backup() {
         // Also inside the backup.
         let out = backup.path().join("out");
         let path = backup.path().to_str().unwrap();
-        let output = joulepath(&["optimize", path, "--out", out.to_str().unwrap(), "--quiet"]);
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        run(&["optimize", path, "--out", out.to_str().unwrap(), "--quiet"]);
         let mut after = files(&out);
         assert_lists_the_new_module(&before[INFO], &after.remove(INFO).unwrap());
         assert!(after.remove(NEW).is_some());
@@ -169,7 +143,7 @@ fn the_retrofit_of_a_backup_is_the_whole_backup() {
 }
 
 #[test]
-fn a_backup_is_changed_in_place_and_taken_back() {
+fn undo_restores_a_backup_that_was_changed_in_place() {
     let folder = tempfile::tempdir().unwrap();
     let backup = folder.path().join("monday");
     copy(Path::new("fixtures/backup"), &backup);
@@ -178,16 +152,14 @@ fn a_backup_is_changed_in_place_and_taken_back() {
     for named in ["", "RAPID/TASK2", "RAPID/TASK2/PROGMOD/MainModule.mod"] {
         let path = if named.is_empty() { backup.clone() } else { backup.join(named) };
         let path = path.to_str().unwrap();
-        let output = joulepath(&["optimize", path, "--in-place", "--quiet"]);
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        run(&["optimize", path, "--in-place", "--quiet"]);
         let after = files(&backup);
         assert_lists_the_new_module(&before["monday/BACKINFO/backinfo.txt"], &after[INFO]);
         assert!(after.contains_key(NEW));
         assert!(!after.keys().any(|path| path.contains(".bak") || path.contains("undo")));
         let kept = files(&folder.path().join("monday.joulepath-undo"));
         assert!(kept.contains_key("manifest.json") && kept.contains_key(&format!("files/{INFO}")));
-        let output = joulepath(&["optimize", path, "--undo"]);
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        run(&["optimize", path, "--undo"]);
         assert_eq!(files(folder.path()), before, "{named}");
     }
 }

@@ -1,15 +1,17 @@
 //! The simulator of the examination compared with the library's dynamics; its seals and grades.
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
+mod command;
+
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
 
+use command::{json, refused, run, stdout};
 use joulepath::arm::dynamics::{self, Data, Load};
 use joulepath::arm::robot::{self, MAX_DOF, Model};
 use joulepath::examine::blind::{self, Case, Grades, Kind, Label, Settings, TrueParameter, Truth};
 use joulepath::learn::log::{ColumnMap, read_csv};
-use serde_json::{Value, json};
+use serde_json::Value;
 
 /// Largest difference of two formulations of the dynamics, relative to the largest torque.
 const SAME: f64 = 1e-9;
@@ -22,10 +24,10 @@ const RESTS: f64 = 0.02;
 
 /// A state of a robot: angles, rates, accelerations.
 fn state(k: usize) -> [[f64; MAX_DOF]; 3] {
-    let of = |offset: f64, size: f64| {
+    let wave = |offset: f64, size: f64| {
         std::array::from_fn(|joint| size * (offset + 1.7 * k as f64 + 2.3 * joint as f64).sin())
     };
-    [of(0.0, 1.5), of(1.0, 2.0), of(2.0, 9.0)]
+    [wave(0.0, 1.5), wave(1.0, 2.0), wave(2.0, 9.0)]
 }
 
 fn same_torques(model: &Model) {
@@ -45,7 +47,7 @@ fn same_torques(model: &Model) {
 }
 
 #[test]
-fn virtual_work_is_newton_euler() {
+fn virtual_work_and_newton_euler_give_the_same_torques() {
     same_torques(&robot::find("IRB1600-10/1.45").unwrap());
     for file in ["fixtures/dynamics/skew.toml", "fixtures/dynamics/seven.toml"] {
         same_torques(&robot::load(file).unwrap());
@@ -73,11 +75,11 @@ fn the_same_seed_gives_the_same_bytes() {
 
 /// Names, order and headers of the files do not reveal the kind of a case.
 #[test]
-fn files_are_alike() {
+fn case_files_do_not_reveal_the_kind_of_a_case() {
     for number in 1..=12 {
         let case = blind::case(&short(8), number).unwrap();
         let names: Vec<&str> = case.files.iter().map(|(name, _)| name.as_str()).collect();
-        if is_of_a_program(&case) {
+        if has_a_program(&case) {
             continue;
         }
         let mut expected = vec!["nominal.toml", "log-1.csv", "log-2.csv", "heldout.csv"];
@@ -98,7 +100,7 @@ fn files_are_alike() {
     }
 }
 
-fn is_of_a_program(case: &Case) -> bool {
+fn has_a_program(case: &Case) -> bool {
     case.files.iter().any(|(name, _)| name.starts_with("program/"))
 }
 
@@ -110,11 +112,11 @@ fn first(kind: Kind, settings: &Settings) -> Case {
 
 /// The moves of a program have the stated durations; an extra wait follows the stated move.
 #[test]
-fn programs_run_as_they_say() {
+fn program_logs_agree_with_stated_durations_and_labels() {
     let settings = short(4);
     let cases = (1..80).map(|number| blind::case(&settings, number).unwrap());
     let (mut healthy, mut late) = (0, 0);
-    for case in cases.filter(is_of_a_program) {
+    for case in cases.filter(has_a_program) {
         let program = file(&case, "program/MainModule.mod");
         let log = read_csv(file(&case, "log-1.csv").as_bytes(), &ColumnMap::default()).unwrap();
         let column = |channel| log.column(channel).unwrap();
@@ -159,7 +161,7 @@ fn averaged(column: &[f64], count: usize) -> Vec<f64> {
 
 /// The residual of the nominal model on a healthy log agrees with the label.
 #[test]
-fn healthy_residuals_are_as_stated() {
+fn residuals_of_a_healthy_log_agree_with_its_label() {
     let settings = Settings { cycles: 6, period_s: 8.0, ..Settings::new(21) };
     let case = first(Kind::Healthy, &settings);
     let model = robot::from_toml("nominal.toml", file(&case, "nominal.toml")).unwrap();
@@ -228,21 +230,21 @@ fn label(case: &str, kind: Kind, ids: &[&str]) -> Label {
     }
 }
 
-fn said(id: &str, joints: &[usize], class: &[&str], offset: f64) -> Value {
-    json!({"id": id, "joints": joints, "class": class, "probability": 0.97,
+fn asserted(id: &str, joints: &[usize], class: &[&str], offset: f64) -> Value {
+    serde_json::json!({"id": id, "joints": joints, "class": class, "probability": 0.97,
         "parameters": {"offset": {"value": offset, "sd": 0.1, "unit": "Nm"}}})
 }
 
 fn diagnosis(verdict: &str, effects: &[Value]) -> Value {
-    json!({"verdict": verdict, "effects": effects, "candidates": [], "generic": [],
+    serde_json::json!({"verdict": verdict, "effects": effects, "candidates": [], "generic": [],
         "where": [{"joint": 2, "share_percent": 40.0}, {"joint": 1, "share_percent": 35.0},
                   {"joint": 2, "share_percent": 25.0}], "gap": [], "model": null})
 }
 
 /// Labels and diagnoses with manually counted grades.
-fn graded_by_hand() -> (Vec<Label>, Vec<Value>) {
+fn manually_graded() -> (Vec<Label>, Vec<Value>) {
     let offset =
-        |joints: &[usize], class: &[&str], value| said("torque_offset", joints, class, value);
+        |joints: &[usize], class: &[&str], value| asserted("torque_offset", joints, class, value);
     vec![
         (label("a", Kind::Healthy, &[]), diagnosis("no_gap", &[])),
         (label("b", Kind::Healthy, &[]), diagnosis("effect", &[offset(&[1], &[], 1.0)])),
@@ -250,17 +252,17 @@ fn graded_by_hand() -> (Vec<Label>, Vec<Value>) {
         (label("d", Kind::One, &["torque_offset"]), diagnosis("effect", &[offset(&[2], &[], 1.2)])),
         (
             label("e", Kind::One, &["torque_offset"]),
-            diagnosis("effect", &[said("cable", &[3], &["cable", "torque_offset"], 1.0)]),
+            diagnosis("effect", &[asserted("cable", &[3], &["cable", "torque_offset"], 1.0)]),
         ),
         (
             label("f", Kind::One, &["torque_offset"]),
-            diagnosis("effect", &[said("cable", &[2], &["cable"], 1.0)]),
+            diagnosis("effect", &[asserted("cable", &[2], &["cable"], 1.0)]),
         ),
         (label("g", Kind::One, &["torque_offset"]), diagnosis("unknown", &[])),
         (label("h", Kind::One, &["torque_offset"]), diagnosis("effect", &[offset(&[2], &[], 1.4)])),
         (
             label("i", Kind::Two, &["torque_offset", "cable"]),
-            diagnosis("effect", &[offset(&[2], &[], 1.0), said("cable", &[2], &[], 1.0)]),
+            diagnosis("effect", &[offset(&[2], &[], 1.0), asserted("cable", &[2], &[], 1.0)]),
         ),
         (
             label("j", Kind::Two, &["torque_offset", "cable"]),
@@ -279,8 +281,8 @@ fn hits(grades: &Grades, name: &str) -> (usize, usize) {
 }
 
 #[test]
-fn rates_are_those_counted_by_hand() {
-    let (labels, diagnoses) = graded_by_hand();
+fn rates_agree_with_a_manual_count() {
+    let (labels, diagnoses) = manually_graded();
     let grades = blind::grade(&labels, &diagnoses, None).unwrap();
     for (name, counted) in [
         ("healthy_named", (1, 3)),
@@ -307,8 +309,8 @@ fn rates_are_those_counted_by_hand() {
 }
 
 #[test]
-fn without_its_effect_a_library_may_not_know() {
-    let (labels, diagnoses) = graded_by_hand();
+fn a_left_out_effect_accepts_unknown_or_its_class() {
+    let (labels, diagnoses) = manually_graded();
     let grades = blind::grade(&labels, &diagnoses, Some("torque_offset")).unwrap();
     assert_eq!(grades.cases, 5);
     assert_eq!(hits(&grades, "left_out_unknown_or_class"), (4, 5));
@@ -319,8 +321,8 @@ fn without_its_effect_a_library_may_not_know() {
 }
 
 #[test]
-fn what_is_hardly_there_is_not_asked_for() {
-    let (mut labels, diagnoses) = graded_by_hand();
+fn effects_with_little_evidence_are_not_graded() {
+    let (mut labels, diagnoses) = manually_graded();
     for label in &mut labels {
         for truth in &mut label.effects {
             truth.nats = 0.5;
@@ -332,7 +334,7 @@ fn what_is_hardly_there_is_not_asked_for() {
 }
 
 #[test]
-fn seals_open_and_tell_a_change() {
+fn opening_the_seals_detects_a_changed_key() {
     let labels = vec![
         (label("case-0001", Kind::Healthy, &[]), "salt".to_owned()),
         (label("case-0002", Kind::One, &["cable"]), "pepper".to_owned()),
@@ -355,52 +357,38 @@ fn seals_open_and_tell_a_change() {
     assert!(!sealed.seals.contains("cable") && !sealed.seals.contains("salt"));
 }
 
-fn joulepath(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_joulepath")).args(args).output().unwrap()
-}
-
-fn refused(args: &[&str], way_out: &str) {
-    let output = joulepath(args);
-    let message = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{message}");
-    assert!(message.contains(way_out), "{message}\nlacks {way_out}");
-    assert!(output.stdout.is_empty());
-}
-
 #[test]
-fn generated_cases_are_graded() {
+fn grade_reads_the_cases_that_generate_writes() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("cases");
     let shown = out.to_str().unwrap();
     let generate =
         ["blind", "generate", "--out", shown, "--seed", "3", "--count", "4", "--cycles", "2"];
     let generate = [&generate[..], &["--period", "4", "--quiet"]].concat();
-    let output = joulepath(&generate);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    run(&generate);
     refused(&generate, "name a new folder");
     let diagnosis = diagnosis("unknown", &[]).to_string();
     for number in 1..=4 {
         let case = out.join(format!("case-{number:04}"));
         fs::write(case.join("diagnosis.json"), &diagnosis).unwrap();
     }
-    let output = joulepath(&["blind", "grade", shown, "--format", "json"]);
-    let grades: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let grades = json(&["blind", "grade", shown, "--format", "json"]);
     assert_eq!(grades["cases"], 4);
     let page = folder.path().join("grades.html");
-    let output = joulepath(&["blind", "grade", shown, "--report", page.to_str().unwrap()]);
-    assert!(String::from_utf8(output.stdout).unwrap().contains("healthy_named"));
+    let output = run(&["blind", "grade", shown, "--report", page.to_str().unwrap()]);
+    assert!(stdout(&output).contains("healthy_named"));
     let page = fs::read_to_string(page).unwrap();
     for text in ["4 cases", "healthy_named", "What stated probabilities are worth", "</html>"] {
         assert!(page.contains(text), "no {text}");
     }
     refused(&["blind", "grade", shown, "--leave-out", "nonsense"], "name one that");
 
-    hostile(&out, shown);
+    damaged_cases_are_refused(&out, shown);
 }
 
 /// No effect of a pair is left out.
 #[test]
-fn of_pairs_nothing_is_left_out() {
+fn cases_with_two_effects_cannot_leave_one_out() {
     let folder = tempfile::tempdir().unwrap();
     let settings = short(13);
     let pairs = (1..200).map(|number| blind::case(&settings, number).unwrap());
@@ -414,7 +402,7 @@ fn of_pairs_nothing_is_left_out() {
 
 /// The library lacks the family; the diagnosis names none of its effects.
 #[test]
-fn families_are_left_out() {
+fn leaving_out_a_family_removes_all_its_effects() {
     let folder = tempfile::tempdir().unwrap();
     let settings = short(13);
     let number = (1..200)
@@ -433,16 +421,14 @@ fn families_are_left_out() {
     fs::write(out.join(blind::KEY), sealed.key).unwrap();
     fs::write(out.join(blind::SEALS), sealed.seals).unwrap();
     let shown = out.to_str().unwrap();
-    let args = ["blind", "grade", shown, "--leave-out", "family", "--format", "json"];
-    let output = joulepath(&args);
-    let grades: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!((&grades["cases"], &grades["left_out"]), (&json!(1), &json!("family")));
+    let grades = json(&["blind", "grade", shown, "--leave-out", "family", "--format", "json"]);
+    assert_eq!((&grades["cases"], &grades["left_out"]), (&1.into(), &"family".into()));
     let kept = out.join(&case.name).join("diagnosis-without-family.json");
     let kept: Value = serde_json::from_str(&fs::read_to_string(kept).unwrap()).unwrap();
     let all =
         kept["effects"].as_array().unwrap().iter().chain(kept["candidates"].as_array().unwrap());
-    for said in all {
-        let id = said["id"].as_str().unwrap();
+    for effect in all {
+        let id = effect["id"].as_str().unwrap();
         let of_family =
             ["wrist_coupling", "ripple", "backlash", "elasticity", "rotor_inertia", "brake_drag"];
         assert!(!of_family.contains(&id), "{id}");
@@ -450,7 +436,7 @@ fn families_are_left_out() {
 }
 
 /// Damaged, missing or changed files.
-fn hostile(out: &Path, shown: &str) {
+fn damaged_cases_are_refused(out: &Path, shown: &str) {
     let diagnosis = out.join("case-0002/diagnosis.json");
     let good = fs::read(&diagnosis).unwrap();
     for (text, way_out) in [

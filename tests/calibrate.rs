@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
+mod command;
 mod support;
 
 use joulepath::arm::dynamics::{Data, torque};
@@ -10,15 +11,15 @@ use joulepath::arm::robot::prior::{Spread, standard_normals};
 use joulepath::arm::robot::{Model, find, from_toml, to_toml};
 use joulepath::learn::calibrate::{Refusal, calibrate};
 use joulepath::learn::log::{Channel, Log};
-use joulepath::rapid::text::{FileId, SourceFile};
 use joulepath::retime::energy::account;
 use joulepath::retime::energy::plausible::{DRAWS, Interval, plausibility};
 use joulepath::retime::energy::trajectory::{Sample, trajectory};
 use joulepath::retime::motion::timeline::{Event, What};
-use joulepath::retime::motion::{Options, Simulation, simulate};
+use joulepath::retime::motion::{Options, Simulation};
 use joulepath::tool::report::html::optimize_report;
-use joulepath::tool::retrofit::{Settings, Source, read_program, retrofit};
+use joulepath::tool::retrofit::{Settings, Source, retrofit};
 use rayon::prelude::*;
+use support::program as source;
 
 /// A program with another cycle.
 const OTHER: &str = "MODULE Other
@@ -41,21 +42,15 @@ ENDMODULE
 /// Number of true robots, and accepted number of them within the 90 % intervals.
 const TRUTHS: usize = 100;
 const INSIDE: std::ops::RangeInclusive<usize> = 85..=95;
-/// Number of robots with their own energy in its interval.
+/// Least number of true robots whose calibrated energy lies in its own interval.
 const POINTS: usize = 95;
-
-fn source(text: &str) -> Vec<Source> {
-    let file = SourceFile::new(FileId(0), "other.mod".to_owned(), text.as_bytes().to_vec());
-    vec![Source { relative: file.path.clone(), file }]
-}
 
 fn pick_place() -> Vec<Source> {
     support::modules("pick_place")
 }
 
 fn simulated(model: &Model, files: &[Source]) -> Simulation {
-    let (program, entry) = read_program(files, "main").unwrap();
-    simulate(&program, entry, model, &Options::default())
+    support::simulated(model, files, &Options::default())
 }
 
 fn robot(name: &str) -> Model {
@@ -152,7 +147,7 @@ fn holds(Interval { low, high, .. }: Interval, x: f64) -> bool {
 }
 
 #[test]
-fn intervals_hold_the_truth_as_often_as_they_say() {
+fn calibrated_intervals_contain_the_truth_as_often_as_stated() {
     let model = robot("IRB2600-20/1.65");
     let simulation = simulated(&model, &pick_place());
     let other = simulated(&model, &source(OTHER));
@@ -186,7 +181,7 @@ fn intervals_hold_the_truth_as_often_as_they_say() {
 }
 
 /// Largest half width of the interval of the saving, relative to the saving.
-const OF_USE: f64 = 0.5;
+const USEFUL_WIDTH: f64 = 0.5;
 
 /// Least share of plausible robots without a larger joint torque in a run than in the original
 /// cycle, and tolerance of a peak between two instants.
@@ -195,7 +190,7 @@ const BETWEEN: f64 = 1.02;
 
 /// Whether each run of a retrofit needs no larger joint torque than the original cycle, for each
 /// robot with its own dynamics.
-fn asks_no_more(model: &Model, before: &Simulation, after: &Simulation) -> bool {
+fn needs_no_larger_torques(model: &Model, before: &Simulation, after: &Simulation) -> bool {
     let robots = Spread::new(model).draws(model, DRAWS).robots;
     let robots: Vec<Model> = robots.iter().map(|robot| drawn(model, robot).unwrap()).collect();
     let peaks = |robot: &Model, event: &Event| {
@@ -228,7 +223,7 @@ fn asks_no_more(model: &Model, before: &Simulation, after: &Simulation) -> bool 
 }
 
 #[test]
-fn a_calibrated_saving_is_of_use_for_robots_of_all_sizes() {
+fn a_calibrated_saving_has_a_narrow_interval_for_robots_of_all_sizes() {
     let files = pick_place();
     for name in
         ["IRB1600-6/1.45", "IRB2400", "IRB2600-20/1.65", "IRB4600-60/2.05", "IRB6700-200/2.6"]
@@ -247,19 +242,19 @@ fn a_calibrated_saving_is_of_use_for_robots_of_all_sizes() {
             assert!(bound.is_none_or(|bound| bound <= after), "{name}: {bound:?} J, {after} J");
         }
         let page = optimize_report(&done, &files, &found.model, "main").unwrap();
-        for told in ["plausible robots it saves", "of the variance", "most would tell"] {
-            assert!(page.contains(told), "{name}: {told}");
+        for reported in ["plausible robots it saves", "of the variance", "most would tell"] {
+            assert!(page.contains(reported), "{name}: {reported}");
         }
         let Interval { median, low, high } = done.uncertainty.unwrap().saving_percent[1];
-        assert!(asks_no_more(&found.model, &done.before.0, &done.after.0), "{name}");
+        assert!(needs_no_larger_torques(&found.model, &done.before.0, &done.after.0), "{name}");
         let width = 0.5 * (high - low);
-        assert!(width <= OF_USE * median && median > 0.0, "{name}: {median} {low} {high}");
+        assert!(width <= USEFUL_WIDTH * median && median > 0.0, "{name}: {median} {low} {high}");
     }
 }
 
 /// In a short program each movement is among those with the largest torques.
 #[test]
-fn few_movements_get_streams_that_ask_no_more() {
+fn streams_of_a_short_program_need_no_larger_torques() {
     let files = source(OTHER);
     let model = robot("IRB7600-400/2.55");
     let settings = Settings { entry: "main".into(), ..Settings::default() };
@@ -268,7 +263,7 @@ fn few_movements_get_streams_that_ask_no_more() {
     assert!(rewritten >= 2, "{:#?}", done.segments);
     let saving = done.uncertainty.unwrap().saving_percent[1];
     assert!(saving.low > 0.0, "{saving:?}");
-    assert!(asks_no_more(&model, &done.before.0, &done.after.0));
+    assert!(needs_no_larger_torques(&model, &done.before.0, &done.after.0));
 }
 
 #[test]
@@ -286,8 +281,8 @@ fn logs_of_other_programs_and_robots_are_refused() {
         assert!(program, "{refusal}");
     }
     let large = robot("IRB6700-200/2.6");
-    let of_large = log(&large, &simulated(&large, &pick_place()), &METER);
-    assert!(calibrate(&model, &program, &of_large, None).is_err());
+    let large_log = log(&large, &simulated(&large, &pick_place()), &METER);
+    assert!(calibrate(&model, &program, &large_log, None).is_err());
     // The same motion with thirty times the power above that at rest.
     let own = log(&model, &program, &METER);
     let rest = own.values[1].iter().copied().fold(f64::INFINITY, f64::min);
@@ -298,27 +293,27 @@ fn logs_of_other_programs_and_robots_are_refused() {
 }
 
 #[test]
-fn kilowatts_and_numbers_of_movements_and_cycles_are_understood() {
+fn logs_in_kilowatts_and_with_movement_or_cycle_numbers_are_read() {
     let model = robot("IRB2600-20/1.65");
     let program = simulated(&model, &pick_place());
     let plain = calibrate(&model, &program, &log(&model, &program, &METER), None).unwrap();
     let in_kw = log(&model, &program, &Recording { unit: 1e-3, ..METER });
-    let of_kw = calibrate(&model, &program, &in_kw, None).unwrap();
-    assert!(of_kw.found.kilowatts && !plain.found.kilowatts);
+    let in_kilowatts = calibrate(&model, &program, &in_kw, None).unwrap();
+    assert!(in_kilowatts.found.kilowatts && !plain.found.kilowatts);
     let width = |i: Interval| i.high - i.low;
     let before = width(plain.before.energy_j);
     let with_commands = log(&model, &program, &Recording { marks: Marks::Commands, ..METER });
-    let of_commands = calibrate(&model, &program, &with_commands, None).unwrap();
+    let by_commands = calibrate(&model, &program, &with_commands, None).unwrap();
     let with_cycles = log(&model, &program, &Recording { marks: Marks::Cycles, ..METER });
-    let of_cycles = calibrate(&model, &program, &with_cycles, None).unwrap();
-    for found in [&plain, &of_kw, &of_commands, &of_cycles] {
+    let by_cycles = calibrate(&model, &program, &with_cycles, None).unwrap();
+    for found in [&plain, &in_kilowatts, &by_commands, &by_cycles] {
         assert!(width(found.after.energy_j) < 0.1 * before, "{:?}", found.after.energy_j);
     }
 }
 
 /// The start of a log determines the first movement of its first pass.
 #[test]
-fn logs_with_numbers_of_movements_may_begin_anywhere() {
+fn logs_with_movement_numbers_may_begin_anywhere() {
     // For a large robot the power of movements is many times that of waits.
     let model = robot("IRB7600-400/2.55");
     let program = simulated(&model, &source(OTHER));
@@ -334,32 +329,20 @@ fn logs_with_numbers_of_movements_may_begin_anywhere() {
 const BEGINS: u64 = 8;
 
 #[test]
-fn nothing_that_is_read_is_written_over() {
-    let folder = tempfile::tempdir().unwrap();
-    let program = folder.path().join("m.mod");
-    std::fs::write(&program, OTHER).unwrap();
-    let log = folder.path().join("power.csv");
-    std::fs::write(&log, "t,power\n0,400\n").unwrap();
+fn input_files_are_not_overwritten() {
+    let (folder, program) = command::module(OTHER);
+    let log = command::written(&folder, "power.csv", "t,power\n0,400\n");
     for target in [&program, &log] {
         let before = std::fs::read(target).unwrap();
-        let output = std::process::Command::new(env!("CARGO_BIN_EXE_joulepath"))
-            .arg("calibrate")
-            .arg(&program)
-            .args(["--robot", "IRB2600-20/1.65", "--log"])
-            .arg(&log)
-            .arg("--out")
-            .arg(target)
-            .output()
-            .unwrap();
-        let said = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{said}");
-        assert!(said.contains("is read by this command"), "{said}");
+        let args = ["calibrate", &program, "--robot", "IRB2600-20/1.65", "--log", &log];
+        let args = [&args[..], &["--out", target]].concat();
+        command::refused(&args, "is read by this command");
         assert_eq!(std::fs::read(target).unwrap(), before);
     }
 }
 
 #[test]
-fn torques_tell_more_than_power_alone() {
+fn logged_torques_narrow_the_friction_more_than_power_alone() {
     let model = robot("IRB2600-20/1.65");
     let program = simulated(&model, &pick_place());
     let spread = Spread::new(&model);
@@ -370,8 +353,9 @@ fn torques_tell_more_than_power_alone() {
     let left = |torques: Option<&[Vec<f64>]>| -> Vec<f64> {
         let found = calibrate(&model, &program, &log, torques).unwrap();
         let friction = (1..=model.dof).map(|j| format!("friction of joint {j}"));
-        let of = |group: String| found.narrowed.iter().find(|(name, _)| *name == group).unwrap().1;
-        friction.map(of).collect()
+        let remaining =
+            |group: String| found.narrowed.iter().find(|(name, _)| *name == group).unwrap().1;
+        friction.map(remaining).collect()
     };
     let (alone, with) = (left(None), left(Some(&torques)));
     assert!(with.iter().zip(&alone).all(|(with, alone)| with < alone), "{with:?}, {alone:?}");
@@ -382,7 +366,7 @@ fn torques_tell_more_than_power_alone() {
 }
 
 #[test]
-fn logs_without_use_are_refused() {
+fn unusable_logs_are_refused() {
     let model = robot("IRB2600-20/1.65");
     let program = simulated(&model, &pick_place());
     let own = log(&model, &program, &METER);
@@ -409,7 +393,7 @@ fn logs_without_use_are_refused() {
 }
 
 #[test]
-fn a_calibrated_robot_is_read_back_as_it_was() {
+fn a_calibrated_robot_is_unchanged_after_writing_and_reading() {
     let model = robot("IRB2600-20/1.65");
     let program = simulated(&model, &pick_place());
     let found = calibrate(&model, &program, &log(&model, &program, &METER), None).unwrap();

@@ -27,7 +27,7 @@ fn speeds(model: &Model) -> Option<Vec<i64>> {
 }
 
 #[test]
-fn every_robot_states_its_sources_and_is_sound() {
+fn every_robot_states_its_sources_and_has_consistent_data() {
     let mut count = 0;
     for name in names() {
         let model = robot(name);
@@ -59,7 +59,7 @@ fn figures_without_a_checkable_source_are_assumed() {
 
 /// `RobotComponents` has the ranges of the two arm lengths swapped.
 #[test]
-fn the_arm_lengths_of_the_irb1600_have_their_own_ranges() {
+fn each_arm_length_of_the_irb1600_has_its_own_ranges() {
     for name in ["IRB1600-6/1.2", "IRB1600-10/1.2"] {
         let model = robot(name);
         assert_eq!((range(&model, 2), range(&model, 3)), ([-63.0, 110.0], [-235.0, 55.0]));
@@ -71,7 +71,7 @@ fn the_arm_lengths_of_the_irb1600_have_their_own_ranges() {
 }
 
 #[test]
-fn axis_2_of_every_irb1600_reaches_further_while_axis_1_looks_forward() {
+fn axis_2_of_every_irb1600_has_a_wider_range_while_axis_1_points_forward() {
     for (name, wide, within) in [
         ("IRB1600-6/1.2", 136.0_f64, 100.0_f64),
         ("IRB1600-10/1.2", 136.0, 100.0),
@@ -120,7 +120,7 @@ fn the_wrist_of_a_gofa_is_offset() {
 }
 
 #[test]
-fn poses_of_a_gofa_lead_back() {
+fn inverse_kinematics_of_a_gofa_recover_the_angles() {
     let model = robot("CRB15000-5/0.95");
     let mut missed = 0;
     for n in 0..200 {
@@ -141,7 +141,7 @@ fn poses_of_a_gofa_lead_back() {
 
 /// The dimensions of `irb6640` in ROS come from meshes (b = 11 mm, c3 = 1395 mm).
 #[test]
-fn no_arm_is_measured_on_meshes() {
+fn no_arm_has_dimensions_measured_on_meshes() {
     for model in robots() {
         if let Some(opw) = &model.kinematics.opw {
             assert_eq!(opw.b, 0.0, "{}", model.name);
@@ -165,7 +165,7 @@ fn axis_2_of_the_irb2600_has_the_right_sign() {
 
 /// `RobotComponents` states −120…125, a controller −125…120.
 #[test]
-fn axis_5_of_the_irb4600_is_the_controllers() {
+fn axis_5_of_the_irb4600_has_the_range_of_the_controller() {
     let model = robot("IRB4600-40/2.55");
     assert!(
         (range(&model, 5)[0] + 125.0).abs() < 1e-3 && (range(&model, 5)[1] - 120.0).abs() < 1e-3
@@ -205,7 +205,7 @@ fn the_joints_of_a_yumi_are_in_the_order_of_the_chain() {
 
 /// The Denavit–Hartenberg table that the files cite.
 #[test]
-fn a_yumi_turns_as_its_table_says() {
+fn the_kinematics_of_a_yumi_agree_with_its_table() {
     const SAME: f64 = 1e-12;
     /// Offset of the angle [rad], d [m], a [m], alpha [rad].
     const TABLE: [[f64; 4]; 7] = [
@@ -251,13 +251,13 @@ fn robots_with_rods_report_the_angle_of_the_forearm() {
 
 /// The Robot Web Services manual: at zero joint angles, [515, 0, 712] mm.
 #[test]
-fn zero_pose_of_an_irb140() {
+fn an_irb140_has_the_zero_pose_of_the_manual() {
     let t = fk(&robot("IRB140-6/0.81"), &[0.0; 6]).translation.vector;
     assert!((t.x - 0.515).abs() < 1e-12 && t.y.abs() < 1e-12 && (t.z - 0.712).abs() < 1e-12);
 }
 
 #[test]
-fn names_of_controllers_and_of_catalogues() {
+fn robots_are_found_by_controller_and_catalogue_names() {
     for (asked, name) in [
         ("ROB1_6700_2.80_205", "IRB6700-205/2.8"),
         ("ROB1_120_0.58_3", "IRB120-3/0.58"),

@@ -2,29 +2,26 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
+mod command;
+
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
 
+use command::{joulepath, parsed, rows, run, stdout};
 use joulepath::examine::blind::{self, Case, Settings};
 use joulepath::learn::log::{Channel, ColumnMap, Log, read_csv};
-use serde_json::Value;
 
 /// Repetitions of each log.
 const CYCLES: usize = 4;
 /// Rate below which a joint counts as at rest \[rad/s\].
 const RESTS: f64 = 0.02;
 /// Tolerance relative to the claim, and relative to the noise of the mean.
-const OF_CLAIM: f64 = 0.05;
-const OF_NOISE: f64 = 0.25;
+const CLAIM_TOLERANCE: f64 = 0.05;
+const NOISE_TOLERANCE: f64 = 0.25;
 /// Offset of an angle against its log \[rad\].
 const OFFSET: f64 = 0.04;
 /// Tolerance of the claimed reduction in percentage points.
-const OF_SHRINK: f64 = 4.0;
-
-fn joulepath(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_joulepath")).args(args).output().unwrap()
-}
+const SHRINK_TOLERANCE: f64 = 4.0;
 
 /// The rows of a log.
 fn log(text: &str) -> Log {
@@ -33,36 +30,30 @@ fn log(text: &str) -> Log {
 
 /// Rms of the residuals and of the torques by joint: of the mean of the repetitions, while the
 /// joint moves.
-fn missed(robot: &str, held: &str) -> [Vec<f64>; 2] {
-    let output = joulepath(&["predict", "--robot", robot, "--log", held, "--quiet"]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let predicted: Vec<Vec<f64>> = String::from_utf8(output.stdout)
-        .unwrap()
-        .lines()
-        .skip(1)
-        .map(|line| line.split(',').map(|x| x.parse().unwrap()).collect())
-        .collect();
+fn residuals(robot: &str, held: &str) -> [Vec<f64>; 2] {
+    let output = run(&["predict", "--robot", robot, "--log", held, "--quiet"]);
+    let predicted = rows(&stdout(&output));
     let log = log(&fs::read_to_string(held).unwrap());
     let time = log.time();
     assert_eq!(predicted.len(), time.len());
-    let rows = time.len() / CYCLES;
+    let count = time.len() / CYCLES;
     let rms = |joint: usize| {
         let q = log.column(Channel::Position(joint)).unwrap();
         let tau = log.column(Channel::Torque(joint)).unwrap();
         let mean = |of: &dyn Fn(usize) -> f64, phase: usize| -> f64 {
-            (0..CYCLES).map(|k| of(k * rows + phase % rows)).sum::<f64>() / CYCLES as f64
+            (0..CYCLES).map(|k| of(k * count + phase % count)).sum::<f64>() / CYCLES as f64
         };
         let step = time[1] - time[0];
-        let (mut count, mut squares, mut size) = (0.0, 0.0, 0.0);
-        for phase in 0..rows {
-            let change = mean(&|row| q[row], phase + 1) - mean(&|row| q[row], phase + rows - 1);
+        let (mut moving, mut squares, mut size) = (0.0, 0.0, 0.0);
+        for phase in 0..count {
+            let change = mean(&|row| q[row], phase + 1) - mean(&|row| q[row], phase + count - 1);
             if change.abs() > 2.0 * step * RESTS {
-                count += 1.0;
+                moving += 1.0;
                 squares += mean(&|row| tau[row] - predicted[row][1 + joint], phase).powi(2);
                 size += mean(&|row| tau[row], phase).powi(2);
             }
         }
-        [f64::sqrt(squares / count), f64::sqrt(size / count)]
+        [f64::sqrt(squares / moving), f64::sqrt(size / moving)]
     };
     let all: Vec<[f64; 2]> = (0..log.joints()).map(rms).collect();
     [all.iter().map(|of| of[0]).collect(), all.iter().map(|of| of[1]).collect()]
@@ -75,15 +66,15 @@ fn case(seed: u64, number: usize) -> Case {
 }
 
 /// Verifies the claims for an examination case with the effect `id`; returns the reduction, %.
-fn of_case(seed: u64, number: usize, id: &str) -> f64 {
+fn check_case(seed: u64, number: usize, id: &str) -> f64 {
     let case = case(seed, number);
     assert!(case.label.effects.iter().any(|truth| truth.id == id), "{:?}", case.label.effects);
-    holds(&case, id)
+    check_claims(&case, id)
 }
 
 /// Diagnoses a case with one effect of the library and verifies its claims with `predict`; returns
 /// the reduction, %.
-fn holds(case: &Case, id: &str) -> f64 {
+fn check_claims(case: &Case, id: &str) -> f64 {
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in &case.files {
         fs::write(folder.path().join(name), text).unwrap();
@@ -95,20 +86,22 @@ fn holds(case: &Case, id: &str) -> f64 {
     let args = ["diagnose", "--robot", &nominal, "--log", &first, &last, "--heldout", &held];
     let rest = ["--trust", &case.label.trust, "--period", "5", "--effects", id];
     let more = ["--out", &better, "--format", "json", "--quiet"];
-    let output = joulepath(&[&args[..], &rest, &more].concat());
-    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let found = parsed(&joulepath(&[&args[..], &rest, &more].concat()));
     assert_eq!(found["effects"][0]["id"], id, "{found:#}");
     let gap = &found["gap"][0];
-    let [before, size] = missed(&nominal, &held);
-    let [after, _] = missed(&better, &held);
+    let [before, size] = residuals(&nominal, &held);
+    let [after, _] = residuals(&better, &held);
     let mut sums = [0.0; 2];
     for (joint, claim) in gap["per_joint"].as_array().unwrap().iter().enumerate() {
-        let of = |name: &str| claim[name].as_f64().unwrap();
-        let noise = of("noise");
-        let pairs = [(of("model"), before[joint]), (of("refit_plus_effect"), after[joint])];
+        let claimed_rms = |name: &str| claim[name].as_f64().unwrap();
+        let noise = claimed_rms("noise");
+        let pairs = [
+            (claimed_rms("model"), before[joint]),
+            (claimed_rms("refit_plus_effect"), after[joint]),
+        ];
         for (k, (claimed, rms)) in pairs.into_iter().enumerate() {
             let recomputed = (rms * rms - noise * noise).max(0.0).sqrt();
-            let may = OF_CLAIM * claimed + OF_NOISE * noise;
+            let may = CLAIM_TOLERANCE * claimed + NOISE_TOLERANCE * noise;
             assert!(
                 (recomputed - claimed).abs() <= may,
                 "{id}, joint {}: claimed {claimed}, recomputed {recomputed}, noise {noise}",
@@ -119,33 +112,33 @@ fn holds(case: &Case, id: &str) -> f64 {
     }
     let shrink = 100.0 * (1.0 - (sums[1] / sums[0]).sqrt());
     let claimed = gap["shrink_percent"]["value"].as_f64().unwrap();
-    assert!((shrink - claimed).abs() <= OF_SHRINK, "{id}: claimed {claimed} %, {shrink} %");
+    assert!((shrink - claimed).abs() <= SHRINK_TOLERANCE, "{id}: claimed {claimed} %, {shrink} %");
     claimed
 }
 
 #[test]
-fn of_a_payload() {
-    of_case(11, 24, "payload");
+fn claims_hold_for_a_payload() {
+    check_case(11, 24, "payload");
 }
 
 #[test]
-fn of_stiction() {
-    of_case(14, 40, "stribeck");
+fn claims_hold_for_stiction() {
+    check_case(14, 40, "stribeck");
 }
 
 #[test]
-fn of_a_delay() {
-    of_case(12, 38, "time_delay");
+fn claims_hold_for_a_time_delay() {
+    check_case(12, 38, "time_delay");
 }
 
 #[test]
-fn of_a_flipped_sign() {
-    of_case(13, 53, "current_sign");
+fn claims_hold_for_a_flipped_current_sign() {
+    check_case(13, 53, "current_sign");
 }
 
 /// A healthy robot with an offset of the second angle in its logs.
 #[test]
-fn of_an_encoder_offset() {
+fn claims_hold_for_an_encoder_offset() {
     let mut case = case(11, 5);
     for (_, text) in case.files.iter_mut().filter(|(_, text)| text.starts_with("t,")) {
         let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
@@ -157,40 +150,40 @@ fn of_an_encoder_offset() {
         }
         *text = lines.join("\n") + "\n";
     }
-    holds(&case, "encoder_offset");
+    check_claims(&case, "encoder_offset");
 }
 
 #[test]
-fn of_a_tilted_base() {
-    of_case(12, 13, "base_tilt");
+fn claims_hold_for_a_tilted_base() {
+    check_case(12, 13, "base_tilt");
 }
 
 #[test]
-fn of_a_coupled_wrist() {
-    of_case(13, 38, "wrist_coupling");
+fn claims_hold_for_a_coupled_wrist() {
+    check_case(13, 38, "wrist_coupling");
 }
 
 /// Friction of motor 6 with a smooth change of sign over a few per cent of its rate: rows at such
 /// slow rates contain no information on its coupling.
 #[test]
-fn of_a_coupled_wrist_whose_friction_is_rounded() {
-    let shrink = of_case(13, 1, "wrist_coupling");
+fn claims_hold_for_a_coupled_wrist_with_smooth_friction() {
+    let shrink = check_case(13, 1, "wrist_coupling");
     assert!(shrink > 75.0, "{shrink}");
 }
 
 #[test]
-fn of_a_dragging_brake() {
-    of_case(13, 35, "brake_drag");
+fn claims_hold_for_a_dragging_brake() {
+    check_case(13, 35, "brake_drag");
 }
 
 #[test]
-fn of_a_force_from_outside() {
-    of_case(13, 26, "contact");
+fn claims_hold_for_an_external_force() {
+    check_case(13, 26, "contact");
 }
 
 /// A robot that is cold at the start of the log clock and warms up.
 #[test]
-fn warming_up_counts_by_the_clock_of_the_logs() {
+fn warm_up_friction_depends_on_the_time_in_the_log() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name).display().to_string();
     let model = at("cold.toml");
@@ -198,16 +191,15 @@ fn warming_up_counts_by_the_clock_of_the_logs() {
         coulomb = 10.0\ntime_constant = 100.0\n";
     fs::write(&model, text).unwrap();
     let friction = |start: f64| -> f64 {
-        let rows = (0..200).map(|row| {
+        let lines = (0..200).map(|row| {
             let t = 0.01 * f64::from(row);
             format!("{},{t},0,0,0,0,0", start + t)
         });
-        let csv = format!("t,q1,q2,q3,q4,q5,q6\n{}\n", rows.collect::<Vec<_>>().join("\n"));
+        let csv = format!("t,q1,q2,q3,q4,q5,q6\n{}\n", lines.collect::<Vec<_>>().join("\n"));
         let log = at("log.csv");
         fs::write(&log, csv).unwrap();
-        let output = joulepath(&["predict", "--robot", &model, "--log", &log, "--quiet"]);
-        let text = String::from_utf8(output.stdout).unwrap();
-        text.lines().nth(100).unwrap().split(',').nth(1).unwrap().parse().unwrap()
+        let output = run(&["predict", "--robot", &model, "--log", &log, "--quiet"]);
+        rows(&stdout(&output))[99][1]
     };
     let warmed = friction(0.0) - friction(1000.0);
     assert!((warmed - 10.0).abs() < 0.2, "{warmed} Nm");

@@ -57,7 +57,7 @@ fn section<'a>(page: &'a str, heading: &str) -> &'a str {
 }
 
 #[test]
-fn walkthroughs_show_the_sources() {
+fn walkthrough_diffs_agree_with_the_sources() {
     let page = fs::read_to_string("CONTRIBUTING.md").unwrap();
     for (heading, path) in WALKTHROUGHS {
         let text = section(&page, heading);
@@ -78,7 +78,7 @@ fn walkthroughs_show_the_sources() {
 }
 
 #[test]
-fn hunks_are_compared_by_what_they_leave() {
+fn hunks_contain_the_lines_after_the_change() {
     let diff = "--- a/x\n+++ b/x\n@@ -1,2 +1,2 @@\n first\n-old\n+new\n";
     let [hunk] = &hunks(diff)[..] else { panic!("one hunk") };
     assert_eq!((hunk.path.as_str(), hunk.added), ("x", 1));

@@ -2,9 +2,11 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
-use std::fs;
-use std::process::Command;
+mod command;
 
+use std::fs;
+
+use command::{KNOWN_LIMITS, number};
 use serde_json::Value;
 
 const PROGRAM: &str = "MODULE M\n\
@@ -16,34 +18,22 @@ const PROGRAM: &str = "MODULE M\n\
     MoveAbsJ jA,v1000,fine,tool0;\n\
     ENDPROC\n\
     ENDMODULE\n";
-/// The robot with known limits.
-const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/known_limits.toml");
 /// Relative tolerance of a local optimum.
 const LOCAL: f64 = 5e-3;
 
 fn optimize(config: &str, options: &[&str]) -> Value {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("m.mod");
-    fs::write(&path, PROGRAM).unwrap();
     fs::write(folder.path().join("joulepath.toml"), config).unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
-        .args(["optimize", path.to_str().unwrap(), "--robot", KNOWN, "--allow-faster-joints"])
-        .args(["--format", "json"])
-        .args(options)
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let result: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(result["verification"]["passed"], true);
-    result
+    let robot = ["--robot", KNOWN_LIMITS, "--allow-faster-joints"];
+    command::optimize(folder.path(), PROGRAM, &[&robot[..], options].concat())
 }
 
 fn energy(result: &Value) -> f64 {
-    result["optimized"]["motion_energy_j"].as_f64().unwrap()
+    number(result, "/optimized/motion_energy_j")
 }
 
 #[test]
-fn no_other_cost_saves_more_joules() {
+fn no_other_cost_function_saves_more_energy() {
     let electrical = energy(&optimize("", &["--energy", "electrical"]));
     let others = ["electrical-no-regeneration", "mechanical", "velocity", "torque"]
         .map(|cost| energy(&optimize("", &["--energy", cost])));
@@ -55,29 +45,28 @@ fn no_other_cost_saves_more_joules() {
 }
 
 #[test]
-fn curves_fall_and_stay_above_their_bounds() {
+fn energy_time_curves_fall_and_stay_above_their_bounds() {
     let result = optimize("", &["--pareto", "6", "--allow-faster-tcp"]);
-    let number = |value: &Value, key: &str| value[key].as_f64().unwrap();
     let mut curves = 0;
     for segment in result["segments"].as_array().unwrap() {
         let Some(curve) = segment["pareto"].as_array() else { continue };
         curves += 1;
         assert_eq!(curve.len(), 6);
         for point in curve {
-            assert!(number(point, "lower_bound_j") <= number(point, "energy_j"), "{point}");
+            assert!(number(point, "/lower_bound_j") <= number(point, "/energy_j"), "{point}");
         }
         for pair in curve.windows(2) {
-            assert!(number(&pair[0], "time_s") < number(&pair[1], "time_s"));
+            assert!(number(&pair[0], "/time_s") < number(&pair[1], "/time_s"));
         }
         // The first increases of the duration save most.
-        assert!(number(&curve[1], "energy_j") < number(&curve[0], "energy_j"));
-        assert!(number(&curve[0], "time_s") < number(segment, "time_before_s"));
+        assert!(number(&curve[1], "/energy_j") < number(&curve[0], "/energy_j"));
+        assert!(number(&curve[0], "/time_s") < number(segment, "/time_before_s"));
     }
     assert_eq!(curves, 2);
 }
 
 #[test]
-fn what_the_cell_keeps_free_holds_for_free_paths_only() {
+fn keep_out_zones_restrict_only_free_paths() {
     let free = ["--free-path", "--deviation", "80"];
     let alone = energy(&optimize("", &free));
     let kept = energy(&optimize("", &[]));

@@ -30,7 +30,7 @@ fn rate(arms: &[Model], kind: Kind) -> f64 {
 }
 
 #[test]
-fn intervals_hold_gravity_and_inertia_of_other_makers_arms() {
+fn intervals_contain_gravity_and_inertia_of_other_makers_arms() {
     for folder in ["makers/chosen", "makers/unseen", "."] {
         for kind in [Kind::Gravity, Kind::Acceleration] {
             let rate = rate(&arms(folder), kind);
@@ -41,7 +41,7 @@ fn intervals_hold_gravity_and_inertia_of_other_makers_arms() {
 
 /// For the Panda the friction behind the torque sensors is known, for the `UR5e` none.
 #[test]
-fn intervals_hold_the_friction_that_was_identified() {
+fn intervals_contain_identified_friction() {
     let mut arms = arms(".");
     arms.retain(|arm| arm.name.contains("UR10") || arm.name.contains("TX40"));
     arms.push(find("IRB1600-10/1.45").unwrap());

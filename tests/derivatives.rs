@@ -42,7 +42,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..Default::default() })]
 
     #[test]
-    fn derivatives_are_the_limits_of_differences(state in states(), which in 0..ROBOTS) {
+    fn derivatives_agree_with_finite_differences(state in states(), which in 0..ROBOTS) {
         let model = &robots()[which];
         let [q, qd, qdd] = state.map(|v| v[..model.dof].to_vec());
         let found = rnea_derivatives(model, &mut Data::new(), &load(), &q, &qd, &qdd);
@@ -65,7 +65,7 @@ proptest! {
     }
 
     #[test]
-    fn derivatives_know_torque_and_mass(state in states(), which in 0..ROBOTS) {
+    fn derivatives_return_the_torque_and_the_mass_matrix(state in states(), which in 0..ROBOTS) {
         let model = &robots()[which];
         let [q, qd, qdd] = state.map(|v| v[..model.dof].to_vec());
         let mut data = Data::new();
@@ -80,7 +80,7 @@ proptest! {
     }
 
     #[test]
-    fn mass_matrix_has_the_torques_of_unit_accelerations(state in states(), which in 0..ROBOTS) {
+    fn mass_matrix_columns_are_torques_of_unit_accelerations(state in states(), which in 0..ROBOTS) {
         let model = &robots()[which];
         let mut data = Data::new();
         let q = &state[0][..model.dof];
@@ -98,7 +98,7 @@ proptest! {
     }
 
     #[test]
-    fn forward_dynamics_undoes_the_inverse(state in states(), which in 0..ROBOTS) {
+    fn forward_dynamics_inverts_inverse_dynamics(state in states(), which in 0..ROBOTS) {
         let model = &robots()[which];
         let [q, qd, qdd] = state.map(|v| v[..model.dof].to_vec());
         let mut data = Data::new();
@@ -112,7 +112,7 @@ proptest! {
 }
 
 #[test]
-fn robot_without_dynamics_does_not_accelerate() {
+fn a_robot_without_dynamics_has_no_forward_dynamics() {
     let model = joulepath::arm::robot::find("IRB6640-180/2.55").expect("in the catalogue");
     let mut data = Data::new();
     let state = [0.1; 6];

@@ -2,16 +2,15 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
+mod command;
+
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
+use command::{joulepath, parsed, refused, run, stderr};
 use joulepath::examine::blind::{self, Settings};
 use serde_json::Value;
-
-fn joulepath(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_joulepath")).args(args).output().unwrap()
-}
 
 /// A short case of the examination in a folder.
 fn case(folder: &Path) {
@@ -25,7 +24,7 @@ fn case(folder: &Path) {
 }
 
 #[test]
-fn the_json_has_what_is_promised() {
+fn the_json_has_the_fields_of_the_contract() {
     let folder = tempfile::tempdir().unwrap();
     case(folder.path());
     let at = |name: &str| folder.path().join(name).display().to_string();
@@ -52,15 +51,15 @@ fn the_json_has_what_is_promised() {
         "--report",
         &page,
     ]);
-    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    let message = stderr(&output);
     assert!(matches!(output.status.code(), Some(0 | 1)), "{message}");
-    let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let value = parsed(&output);
     for key in
         ["verdict", "effects", "candidates", "generic", "where", "gap", "next_experiment", "model"]
     {
         assert!(value.get(key).is_some(), "no {key}");
     }
-    regimes_add_up(&value["where"]);
+    assert_shares_add_up(&value["where"]);
     let gap = &value["gap"][0];
     assert_eq!(gap["per_joint"].as_array().unwrap().len(), 6);
     for key in ["noise", "model", "refit", "refit_plus_effect"] {
@@ -73,30 +72,28 @@ fn the_json_has_what_is_promised() {
     // The proposed next experiment is a valid command.
     if let Some(command) = value["next_experiment"]["command"].as_str() {
         let words: Vec<&str> = command.split(' ').skip(1).collect();
-        let output = joulepath(&[&words[..], &["--seed", "none"]].concat());
-        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        let message = stderr(&joulepath(&[&words[..], &["--seed", "none"]].concat()));
         assert!(message.contains("--seed"), "{command}: {message}");
     }
     // The written model is complete for predictions.
-    let output = joulepath(&["predict", "--robot", &out, "--log", &held, "--quiet"]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    run(&["predict", "--robot", &out, "--log", &held, "--quiet"]);
 }
 
 /// The thirds of a quantity add up to the share of its joint, the effects to that of their third.
-fn regimes_add_up(places: &Value) {
+fn assert_shares_add_up(places: &Value) {
     let places = places.as_array().unwrap();
     let share = |place: &Value| place["share_percent"].as_f64().unwrap();
-    let of = |joint: u64, quantity: &str| -> Vec<&Value> {
+    let of_joint = |joint: u64, quantity: &str| -> Vec<&Value> {
         let is_of = |place: &&Value| {
             place["joint"] == joint && place["regime"].as_str().unwrap().starts_with(quantity)
         };
         places.iter().filter(is_of).collect()
     };
     for joint in 1..=6 {
-        let whole = of(joint, "all");
+        let whole = of_joint(joint, "all");
         assert_eq!(whole.len(), 1);
         for quantity in ["speed", "position", "load", "time"] {
-            let thirds = of(joint, quantity);
+            let thirds = of_joint(joint, quantity);
             assert_eq!(thirds.len(), 3, "joint {joint}, {quantity}");
             let sum: f64 = thirds.iter().map(|place| share(place)).sum();
             assert!((sum - share(whole[0])).abs() < 1e-6, "joint {joint}, {quantity}: {sum}");
@@ -112,7 +109,7 @@ fn regimes_add_up(places: &Value) {
 
 /// Of a single log the last repetitions are held out.
 #[test]
-fn of_one_log_the_last_cycles_are_held_out() {
+fn the_last_cycles_of_a_single_log_are_held_out() {
     let folder = tempfile::tempdir().unwrap();
     let settings = Settings { cycles: 5, period_s: 4.0, ..Settings::new(5) };
     let made = blind::case(&settings, 3).unwrap();
@@ -139,8 +136,8 @@ fn of_one_log_the_last_cycles_are_held_out() {
     let gap = |log: &str| {
         let robot = folder.path().join("nominal.toml").display().to_string();
         let common = ["diagnose", "--robot", &robot, "--period", "4", "--format", "json"];
-        let output = joulepath(&[&common[..], &["--effects", "ripple", "--log", log]].concat());
-        let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let args = [&common[..], &["--effects", "ripple", "--log", log]].concat();
+        let value = parsed(&joulepath(&args));
         assert_eq!(value["gap"][0]["heldout"], "cycles");
         value["gap"][0]["per_joint"][0]["model"].as_f64().unwrap()
     };
@@ -151,7 +148,7 @@ fn of_one_log_the_last_cycles_are_held_out() {
 
 /// A wrong stated period causes a note, and the true period is used.
 #[test]
-fn wrong_periods_are_told() {
+fn a_wrong_period_is_reported_and_corrected() {
     let folder = tempfile::tempdir().unwrap();
     case(folder.path());
     let at = |name: &str| folder.path().join(name).display().to_string();
@@ -160,12 +157,11 @@ fn wrong_periods_are_told() {
     let rest = ["--effects", "ripple", "--format", "json", "--period"];
     let diagnosed = |period: &str| joulepath(&[&logs[..], &rest, &[period]].concat());
     let [right, wrong] = ["4", "2.9"].map(diagnosed);
-    let message = String::from_utf8_lossy(&wrong.stderr).into_owned();
-    let told = "--period 2.9: the motion repeats every 4.0000 s; that was used";
-    assert!(message.contains(told), "{message}");
+    let message = stderr(&wrong);
+    let reported = "--period 2.9: the motion repeats every 4.0000 s; that was used";
+    assert!(message.contains(reported), "{message}");
     let missed = |output: &Output| -> f64 {
-        let value: Value = serde_json::from_slice(&output.stdout).unwrap();
-        value["gap"][0]["per_joint"][1]["refit"].as_f64().unwrap()
+        parsed(output)["gap"][0]["per_joint"][1]["refit"].as_f64().unwrap()
     };
     let (right, wrong) = (missed(&right), missed(&wrong));
     assert!((wrong / right - 1.0).abs() < 1e-6, "{right} {wrong}");
@@ -210,9 +206,6 @@ fn wrong_input_is_refused() {
         (vec!["--robot", &robot, "--log", &log, "--out", &page, "--report", &page], "another name"),
         (vec!["--robot", &robot, "--log", &log, "--program", &program], "missing.mod"),
     ] {
-        let output = joulepath(&[&["diagnose"], &args[..]].concat());
-        let message = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(2), "{message}");
-        assert!(message.contains(way_out), "{message}\nlacks {way_out}");
+        refused(&[&["diagnose"], &args[..]].concat(), way_out);
     }
 }

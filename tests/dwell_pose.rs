@@ -2,13 +2,14 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
+mod command;
+
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
 
+use command::{IRB1600 as ROBOT, module, number, parsed, refused, run_in};
 use serde_json::Value;
 
-const ROBOT: &str = "IRB1600-10/1.45";
 /// Rounding of a sum of times, s.
 const TIME: f64 = 1e-6;
 /// Relative tolerance of two integrations of the same energy.
@@ -39,38 +40,14 @@ fn program(end_of_line: &str) -> String {
     )
 }
 
-fn command(folder: &Path, text: &str, options: &[&str]) -> Output {
-    let path = folder.join("m.mod");
-    fs::write(&path, text).unwrap();
-    Command::new(env!("CARGO_BIN_EXE_joulepath"))
-        .current_dir(folder)
-        .args(["optimize", "m.mod", "--robot", ROBOT, "--format", "json", "--quiet"])
-        .args(["--out", "out"])
-        .args(options)
-        .output()
-        .unwrap()
-}
-
 fn optimize(folder: &Path, text: &str, options: &[&str]) -> Value {
-    let output = command(folder, text, options);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let result: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(result["verification"]["passed"], true, "{result}");
-    result
+    command::optimize(folder, text, &[&["--robot", ROBOT], options].concat())
 }
 
 /// Simulation of the written program.
 fn simulate(folder: &Path) -> Value {
-    let simulated = Command::new(env!("CARGO_BIN_EXE_joulepath"))
-        .current_dir(folder)
-        .args(["simulate", "out", "--robot", ROBOT, "--format", "json", "--quiet"])
-        .output()
-        .unwrap();
-    serde_json::from_slice(&simulated.stdout).unwrap()
-}
-
-fn number(value: &Value, pointer: &str) -> f64 {
-    value.pointer(pointer).and_then(Value::as_f64).unwrap()
+    let args = ["simulate", "out", "--robot", ROBOT, "--format", "json", "--quiet"];
+    parsed(&run_in(folder, &args))
 }
 
 /// Lines of the moved waits.
@@ -81,7 +58,7 @@ fn rewritten(result: &Value) -> Vec<u64> {
 }
 
 #[test]
-fn a_wait_is_spent_where_holding_takes_less() {
+fn a_wait_moves_to_a_pose_with_less_holding_power() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let standing = optimize(folder, &program(""), &[]);
@@ -107,17 +84,13 @@ fn a_wait_is_spent_where_holding_takes_less() {
     assert!((number(&simulated, "/energy_j") / energy(&result) - 1.0).abs() < ENERGY);
     assert!((number(&simulated, "/cycle_s") - cycle(&result)).abs() < TIME);
     // A second run finds no saving.
-    let again = Command::new(env!("CARGO_BIN_EXE_joulepath"))
-        .current_dir(folder)
-        .args(["optimize", "out", "--robot", ROBOT, "--dwell-pose=30", "--out", "again", "--quiet"])
-        .output()
-        .unwrap();
-    assert!(again.status.success(), "{}", String::from_utf8_lossy(&again.stderr));
+    let again = ["optimize", "out", "--robot", ROBOT, "--dwell-pose=30", "--out", "again"];
+    run_in(folder, &again);
     assert_eq!(fs::read_to_string(folder.join("again/m.mod")).unwrap(), written);
 }
 
 #[test]
-fn a_wait_after_an_output_moves_only_where_its_line_says_so() {
+fn a_wait_after_an_output_moves_only_with_a_free_comment() {
     let folder = tempfile::tempdir().unwrap();
     let text = program(" ! joulepath: free");
     let result = optimize(folder.path(), &text, &["--dwell-pose"]);
@@ -125,7 +98,7 @@ fn a_wait_after_an_output_moves_only_where_its_line_says_so() {
 }
 
 #[test]
-fn a_wait_whose_length_may_change_stays() {
+fn a_wait_of_variable_length_does_not_move() {
     let folder = tempfile::tempdir().unwrap();
     let constant = "CONST num nCool:=40;\nPROC main()";
     for (declared, lines) in [
@@ -141,7 +114,7 @@ fn a_wait_whose_length_may_change_stays() {
 }
 
 #[test]
-fn what_the_cell_keeps_free_is_not_entered() {
+fn dwell_poses_stay_out_of_keep_out_zones() {
     let folder = tempfile::tempdir().unwrap();
     // No part of the arm may rise above its height in the extended pose.
     fs::write(
@@ -154,21 +127,21 @@ fn what_the_cell_keeps_free_is_not_entered() {
 }
 
 #[test]
-fn distances_that_cannot_be_meant_say_the_way_out() {
-    let folder = tempfile::tempdir().unwrap();
-    for (option, says) in [("--dwell-pose=-3", "more than 0"), ("--dwell-pose=180", "at most 90")] {
-        let output = command(folder.path(), &program(""), &[option]);
-        let message = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(2), "{message}");
-        assert!(message.contains(says), "{message}");
-    }
-    let output = command(folder.path(), &program(""), &["--dwell-pose", "--emit", "retime"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(!folder.path().join("out").exists());
+fn impossible_distances_are_refused_with_the_way_out() {
+    let (folder, path) = module(program(""));
+    let out = folder.path().join("out");
+    let common = ["optimize", &path, "--robot", ROBOT, "--out", out.to_str().unwrap()];
+    let is_refused = |options: &[&str], way_out: &str| {
+        refused(&[&common[..], options].concat(), way_out);
+    };
+    is_refused(&["--dwell-pose=-3"], "more than 0");
+    is_refused(&["--dwell-pose=180"], "at most 90");
+    is_refused(&["--dwell-pose", "--emit", "retime"], "--emit");
+    assert!(!out.exists());
 }
 
 #[test]
-fn another_tool_waits_where_it_stands() {
+fn the_original_wait_runs_with_a_changed_tool() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let tool =

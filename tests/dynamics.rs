@@ -5,7 +5,7 @@
 
 mod arms;
 
-use arms::{ROBOTS, load, robots, states};
+use arms::{ROBOTS, largest, load, robots, states};
 use joulepath::arm::dynamics::{
     Data, Load, friction, gravity, kinetic_energy, potential_energy, rnea,
 };
@@ -28,7 +28,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..Default::default() })]
 
     #[test]
-    fn power_is_the_change_of_energy(state in states(), which in 0..ROBOTS) {
+    fn joint_power_is_the_rate_of_change_of_energy(state in states(), which in 0..ROBOTS) {
         let model = &robots()[which];
         let [q, qd, qdd] = state.map(|v| v[..model.dof].to_vec());
         let tau = rnea(model, &mut Data::new(), &load(), &q, &qd, &qdd);
@@ -45,7 +45,7 @@ proptest! {
     }
 
     #[test]
-    fn torque_is_that_of_the_lagrangian(state in states(), which in 0..ROBOTS) {
+    fn torque_agrees_with_the_lagrangian(state in states(), which in 0..ROBOTS) {
         let model = &robots()[which];
         let [q, qd, qdd] = state.map(|v| v[..model.dof].to_vec());
         let tau = rnea(model, &mut Data::new(), &load(), &q, &qd, &qdd);
@@ -62,7 +62,7 @@ proptest! {
             rate[joint] -= 2.0;
             (ahead - lagrangian(&at, &rate)) / 2.0
         };
-        let largest = tau.iter().fold(1.0, |m: f64, t| m.max(t.abs()));
+        let scale = largest(&tau);
         for joint in 0..model.dof {
             let momentum_rate = (momentum(H, joint) - momentum(-H, joint)) / (2.0 * H);
             let mut moved = q.clone();
@@ -72,14 +72,14 @@ proptest! {
             let slope = (ahead - lagrangian(&moved, &qd)) / (2.0 * H);
             let expected = momentum_rate - slope;
             prop_assert!(
-                (tau[joint] - expected).abs() < DIFFERENCES * largest,
+                (tau[joint] - expected).abs() < DIFFERENCES * scale,
                 "joint {joint}: {} {expected}", tau[joint]
             );
         }
     }
 
     #[test]
-    fn columns_of_the_mass_matrix_make_the_torque(state in states(), which in 0..ROBOTS) {
+    fn mass_matrix_and_bias_give_the_torque(state in states(), which in 0..ROBOTS) {
         let model = &robots()[which];
         let [q, qd, qdd] = state.map(|v| v[..model.dof].to_vec());
         let mut data = Data::new();
@@ -94,11 +94,11 @@ proptest! {
             .collect();
         let bias = rnea(model, &mut data, &load(), &q, &qd, &[]);
         let tau = rnea(model, &mut data, &load(), &q, &qd, &qdd);
-        let largest = tau.iter().chain(&bias).fold(1.0, |m: f64, t| m.max(t.abs()));
+        let scale = largest(&tau).max(largest(&bias));
         let mut twice_kinetic = 0.0;
         for i in 0..model.dof {
             let row: Vec<f64> = columns.iter().map(|column| column[i]).collect();
-            prop_assert!((dot(&row, &qdd) + bias[i] - tau[i]).abs() < EXACT * largest);
+            prop_assert!((dot(&row, &qdd) + bias[i] - tau[i]).abs() < EXACT * scale);
             prop_assert!((0..model.dof).all(|j| (row[j] - columns[i][j]).abs() < EXACT * 100.0));
             twice_kinetic += qd[i] * dot(&row, &qd);
         }
@@ -108,7 +108,7 @@ proptest! {
 }
 
 #[test]
-fn load_acts_as_a_heavier_last_link() {
+fn a_load_acts_at_its_lever_arm_and_loads_can_be_merged() {
     let model = find("IRB1600-10/1.45").unwrap();
     let q = [0.2, 0.4, -0.3, 0.5, 0.7, 0.1];
     let held = |load: &Load| gravity(&model, &mut Data::new(), load, &q);
@@ -127,14 +127,14 @@ fn load_acts_as_a_heavier_last_link() {
 }
 
 #[test]
-fn friction_has_exact_signs() {
+fn friction_follows_the_sign_of_the_velocity() {
     let model = find("IRB1600-10/1.45").unwrap();
     let tau = friction(&model, &[1e-12, -1.0, 0.0, -0.0, 2.0, 0.0], &[0.0; MAX_DOF]);
     assert_eq!(tau, [25.0 + 48.0 * 1e-12, -87.0, 0.0, 0.0, 6.6 + 7.0, 0.0, 0.0]);
 }
 
 #[test]
-fn robot_without_dynamics_has_none() {
+fn a_robot_without_dynamics_has_zero_torques() {
     let model = find("IRB6640-180/2.55").unwrap();
     assert!(!model.has_dynamics());
     let tau = rnea(&model, &mut Data::new(), &load(), &[0.3; 6], &[1.0; 6], &[1.0; 6]);

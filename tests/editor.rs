@@ -70,7 +70,7 @@ fn textmate() -> Value {
 }
 
 #[test]
-fn the_grammar_is_fresh() {
+fn the_editor_grammar_agrees_with_the_lexical_grammar() {
     let fresh = serde_json::to_string_pretty(&textmate()).unwrap() + "\n";
     let written = fs::read_to_string(GRAMMAR).unwrap_or_default();
     if fresh != written {
@@ -81,7 +81,7 @@ fn the_grammar_is_fresh() {
 }
 
 #[test]
-fn the_manifest_names_files_that_are_there() {
+fn files_named_in_the_manifest_exist() {
     let folder = Path::new("editors/vscode");
     let text = fs::read_to_string(folder.join("package.json")).unwrap();
     let manifest: Value = serde_json::from_str(&text).unwrap();

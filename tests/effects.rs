@@ -30,7 +30,7 @@ fn same(a: &[f64], b: &[f64]) -> bool {
 
 /// Each form of an effect changes the corresponding parameter.
 #[test]
-fn an_effect_is_what_it_changes() {
+fn an_effect_acts_like_the_parameter_that_it_changes() {
     let plain = torques(&robot(""), &Load::none());
     for (effect, figures) in [
         (
@@ -59,7 +59,7 @@ fn an_effect_is_what_it_changes() {
 }
 
 #[test]
-fn a_payload_is_a_load() {
+fn the_payload_effect_acts_like_a_load() {
     let effect = "[effects.payload]\nmass = 4.0\ncom_x = 0.05\ncom_z = 0.12";
     let load = Load { mass: 4.0, com: Vector3::new(0.05, 0.0, 0.12), inertia: Matrix3::zeros() };
     let (found, expected) = (torques(&robot(effect), &Load::none()), torques(&robot(""), &load));
@@ -67,7 +67,7 @@ fn a_payload_is_a_load() {
 }
 
 #[test]
-fn rotors_and_losses() {
+fn effects_change_rotors_losses_and_sensors() {
     let changed = robot(
         "[effects.rotor_inertia]\ninertia_j4 = 0.9\n[effects.copper_loss]\nloss_j2 = 1e-4\n\
          [effects.base_load]\npower = 40\n[effects.brake_power]\npower = 5\n\
@@ -88,7 +88,7 @@ fn rotors_and_losses() {
 
 /// The bound of an effect does not depend on the values of another effect.
 #[test]
-fn a_joint_may_rub_less_at_breakaway_down_to_nothing() {
+fn breakaway_friction_may_decrease_to_zero() {
     let text = "extends = \"IRB1600-10/1.45\"\nname = \"changed\"\n\
                 [effects.cable]\nstiffness_j2 = -100\n\
                 [effects.stribeck]\nstiction_j2 = -12\nvelocity_j2 = 0.1\n";
@@ -97,7 +97,7 @@ fn a_joint_may_rub_less_at_breakaway_down_to_nothing() {
 }
 
 #[test]
-fn wrong_effects_say_why() {
+fn wrong_effects_are_refused_with_the_reason() {
     let messages = [
         "[effects.backlash]\ngap = 0.001",
         "[effects.stribek]\nstiction = 1",

@@ -9,7 +9,7 @@ use std::path::Path;
 use joulepath::arm::effects::{ALL, Channel, Scope};
 
 #[test]
-fn the_page_is_fresh() {
+fn the_effects_page_agrees_with_the_register() {
     let fresh = page();
     let written = fs::read_to_string("docs/effects.md").unwrap_or_default();
     if fresh != written {

@@ -1,10 +1,12 @@
 //! Files with other encodings and line ends, through the binary.
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
+mod command;
+
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
+use command::{IRB1600, run};
 use encoding_rs::{GBK, WINDOWS_1250, WINDOWS_1251, WINDOWS_1252};
 use serde_json::Value;
 
@@ -12,10 +14,8 @@ const PROGRAM: &str = "MODULE M\n  ! COMMENT\n  PROC main()\n    TPWrite \"COMME
                        MoveJ p10, v100, fine, tool0;\n    a := 1 2;\n  ENDPROC\nENDMODULE\n";
 
 fn parsed(path: &Path) -> Value {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_joulepath"));
-    let output = command.args(["parse", "--format", "json"]).arg(path).output().unwrap();
-    let value: Value = serde_json::from_slice(&output.stdout).unwrap();
-    value["files"][0].clone()
+    let args = ["parse", "--format", "json", path.to_str().unwrap()];
+    command::parsed(&command::joulepath(&args))["files"][0].clone()
 }
 
 /// A text in UTF-16, little-endian, with the byte order mark.
@@ -67,10 +67,8 @@ fn a_retrofit_keeps_the_encoding() {
     let text = fs::read_to_string("fixtures/hard/zones.mod").unwrap() + "! Größe\n";
     let path = folder.path().join("zones.mod");
     fs::write(&path, utf16(&text)).unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_joulepath"));
-    let args = ["--robot", "IRB1600-10/1.45", "--quiet", "--out"];
-    let output = command.arg("optimize").arg(&path).args(args).arg(&out).output().unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let [program, to] = [&path, &out].map(|path| path.to_str().unwrap());
+    run(&["optimize", program, "--robot", IRB1600, "--quiet", "--out", to]);
     let changed = fs::read(out.join("zones.mod")).unwrap();
     assert!(changed.len() > utf16(&text).len(), "a guard was added");
     let file = parsed(&out.join("zones.mod"));

@@ -1,9 +1,11 @@
 //! `excite` through the binary: its program is RAPID and keeps the limits.
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
-use std::fs;
-use std::process::{Command, Output};
+mod command;
 
+use std::fs;
+
+use command::{IRB1600 as ROBOT, json, refused, rows};
 use joulepath::arm::dynamics::Load;
 use joulepath::arm::kinematics::{Body, KeepOut, Obstacle, Plane, fk};
 use joulepath::arm::robot::find;
@@ -12,26 +14,19 @@ use joulepath::rapid::syntax;
 use nalgebra::{Point3, Vector3};
 use serde_json::Value;
 
-const ROBOT: &str = "IRB1600-10/1.45";
 /// Required condition number.
 const CONDITION: f64 = 20.0;
 /// Number of random motions that a design has to match.
 const RANDOM: usize = 2000;
 
-fn joulepath(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_joulepath")).args(args).output().unwrap()
-}
-
 fn excite(folder: &tempfile::TempDir, more: &[&str]) -> Value {
     let out = folder.path().to_str().unwrap();
     let args = ["excite", "--robot", ROBOT, "--out", out, "-q", "--format", "json"];
-    let output = joulepath(&[&args[..], more].concat());
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
+    json(&[&args[..], more].concat())
 }
 
 /// The modules parse without errors and without tolerances.
-fn is_rapid(folder: &tempfile::TempDir) {
+fn assert_valid_rapid(folder: &tempfile::TempDir) {
     for name in ["JoulepathExcitation.mod", "JoulepathLogger.mod"] {
         let bytes = fs::read(folder.path().join(name)).unwrap();
         let parse = syntax::parse(&bytes);
@@ -41,12 +36,12 @@ fn is_rapid(folder: &tempfile::TempDir) {
 }
 
 #[test]
-fn the_motion_tells_all_parameters_within_all_limits() {
+fn the_motion_determines_all_parameters_within_all_limits() {
     let folder = tempfile::tempdir().unwrap();
     let found = excite(&folder, &["--plane", "1,0,0,-0.8"]);
     assert_eq!(found["rank"], 58);
     assert!(found["condition"]["scaled"].as_f64().unwrap() <= CONDITION, "{found}");
-    is_rapid(&folder);
+    assert_valid_rapid(&folder);
 
     let model = find(ROBOT).unwrap();
     let csv = fs::read_to_string(folder.path().join("excitation.csv")).unwrap();
@@ -54,10 +49,9 @@ fn the_motion_tells_all_parameters_within_all_limits() {
     let (velocity, acceleration) =
         (limits.velocity.as_ref().unwrap(), limits.acceleration.as_ref().unwrap());
     let torque = limits.torque.as_ref().unwrap();
-    let mut rows = 0;
-    for line in csv.lines().skip(1) {
-        let x: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
-        assert!((x[0] - 0.001 * f64::from(rows)).abs() < 1e-9);
+    let motion = rows(&csv);
+    for (row, x) in motion.iter().enumerate() {
+        assert!((x[0] - 0.001 * row as f64).abs() < 1e-9);
         for j in 0..6 {
             let [low, high] = limits.position_at(&x[1..7], j);
             assert!((low..=high).contains(&x[1 + j]));
@@ -66,9 +60,8 @@ fn the_motion_tells_all_parameters_within_all_limits() {
             assert!(x[19 + j].abs() <= torque[j]);
         }
         assert!(fk(&model, &x[1..7]).translation.x >= -0.8);
-        rows += 1;
     }
-    assert_eq!(rows, 10_000);
+    assert_eq!(motion.len(), 10_000);
 
     let design = Design {
         focus: Focus::All,
@@ -99,9 +92,9 @@ fn arm_and_tool_stay_out_of_a_box() {
     let keep_out = KeepOut::between(Point3::new(0.7, -1.5, 0.0), Point3::new(1.2, 1.5, 0.7));
     let body = Body::new(&model, Vector3::new(0.0, 0.0, 0.25), &[]);
     let csv = fs::read_to_string(folder.path().join("excitation.csv")).unwrap();
-    for line in csv.lines().skip(1) {
-        let q: Vec<f64> = line.split(',').skip(1).take(6).map(|x| x.parse().unwrap()).collect();
-        for capsule in body.capsules(&q).iter().skip(1) {
+    for row in rows(&csv) {
+        let q = &row[1..7];
+        for capsule in body.capsules(q).iter().skip(1) {
             for share in 0..=10 {
                 let p = keep_out.pose.inverse_transform_point(&capsule.at(f64::from(share) / 10.0));
                 let outside = p.coords.abs() - keep_out.half;
@@ -112,7 +105,7 @@ fn arm_and_tool_stay_out_of_a_box() {
 }
 
 #[test]
-fn small_experiments_are_rapid_too() {
+fn small_experiments_are_valid_rapid() {
     for (variant, more) in
         [("friction", &[][..]), ("wrist", &["--torque", "motor-torque", "--spacing", "adaptive"])]
     {
@@ -122,7 +115,7 @@ fn small_experiments_are_rapid_too() {
             assert!(ratio.as_f64().unwrap() <= 1.0, "{variant}: {what} {ratio}");
         }
         assert!(found["self_margin_m"].as_f64().unwrap() >= 0.0);
-        is_rapid(&folder);
+        assert_valid_rapid(&folder);
         let logger = fs::read_to_string(folder.path().join("JoulepathLogger.mod")).unwrap();
         assert_eq!(logger.contains("TestSignDefine"), more.is_empty());
         let ratio = find(ROBOT).unwrap().motors.unwrap().ratio[3];
@@ -132,7 +125,7 @@ fn small_experiments_are_rapid_too() {
 }
 
 #[test]
-fn wrong_options_say_the_way_out() {
+fn wrong_options_are_refused_with_the_way_out() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
     for (more, message) in [
@@ -147,10 +140,7 @@ fn wrong_options_say_the_way_out() {
         (&["--cycles", "0"], "give 1 to 10000"),
     ] {
         let args = ["excite", "--robot", ROBOT, "--out", out, "-q", "--variant", "friction"];
-        let output = joulepath(&[&args[..], more].concat());
-        let text = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(2), "{more:?}: {text}");
-        assert!(text.contains(message), "{more:?}: {text}");
+        refused(&[&args[..], more].concat(), message);
     }
 }
 
@@ -176,17 +166,16 @@ fn impossible_numbers_are_refused_at_once() {
         ("--plane", "1,0,0,3"),
     ] {
         let out = folder.path().to_str().unwrap();
-        let output = joulepath(&["excite", "--robot", ROBOT, "--out", out, option, value]);
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(2), "{option} {value}: {said}");
-        assert!(!said.contains("unexpected argument"), "{option} {value}: {said}");
+        let message =
+            refused(&["excite", "--robot", ROBOT, "--out", out, option, value], "error: ");
+        assert!(!message.contains("unexpected argument"), "{option} {value}: {message}");
         assert!(!folder.path().join("excitation.csv").exists());
     }
 }
 
 /// Repetitions of points with rounded intervals would exceed the period.
 #[test]
-fn adaptive_points_make_a_whole_period() {
+fn adaptive_intervals_add_up_to_the_period() {
     let folder = tempfile::tempdir().unwrap();
     let found = excite(&folder, &["--spacing", "adaptive", "--plane", "1,0,0,-0.8"]);
     let text = fs::read_to_string(folder.path().join("JoulepathExcitation.mod")).unwrap();

@@ -2,35 +2,28 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
+mod command;
+
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
+use command::{IRB1600 as ROBOT, joulepath_in, parsed, run_in, stderr};
 use joulepath::retime::motion::stream::Stream;
 
-const ROBOT: &str = "IRB1600-10/1.45";
 /// Tolerance of the realised joints, rad: 1 mm at the reach of the arm.
 const JOINT_TOLERANCE: f64 = 1e-3;
 
 fn generate(folder: &Path, csv: &str, options: &[&str]) -> Output {
     fs::write(folder.join("points.csv"), csv).unwrap();
-    Command::new(env!("CARGO_BIN_EXE_joulepath"))
-        .args(["generate", "points.csv", "--robot", ROBOT, "--out", "out", "--quiet"])
-        .args(options)
-        .current_dir(folder)
-        .output()
-        .unwrap()
+    let args = ["generate", "points.csv", "--robot", ROBOT, "--out", "out", "--quiet"];
+    joulepath_in(folder, &[&args[..], options].concat())
 }
 
 fn simulate(folder: &Path) -> serde_json::Value {
-    let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
-        .args(["simulate", "out", "--robot", ROBOT, "--format", "json", "--quiet"])
-        .current_dir(folder)
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
+    let args = ["simulate", "out", "--robot", ROBOT, "--format", "json", "--quiet"];
+    parsed(&run_in(folder, &args))
 }
 
 /// Position in a smooth motion of `duration` at a time, rad.
@@ -61,8 +54,8 @@ fn numbers(text: &str) -> Vec<f64> {
 fn a_trajectory_becomes_a_stream_that_follows_it() {
     let folder = tempfile::tempdir().unwrap();
     let output = generate(folder.path(), &trajectory(2.0), &["--format", "json"]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(output.status.success(), "{}", stderr(&output));
+    let report = parsed(&output);
     assert_eq!(report["verification"]["passed"], true);
     for ratio in report["verification"]["max_ratio"].as_object().unwrap().values() {
         assert!(ratio.as_f64().unwrap() <= 1.0);
@@ -99,7 +92,7 @@ fn points_become_movements_that_reach_them() {
     ] {
         let folder = tempfile::tempdir().unwrap();
         let output = generate(folder.path(), csv, &["--as", form]);
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        assert!(output.status.success(), "{}", stderr(&output));
         let simulation = simulate(folder.path());
         let moves = simulation["moves"].as_array().unwrap();
         assert_eq!(moves.len(), 3);
@@ -109,10 +102,10 @@ fn points_become_movements_that_reach_them() {
 }
 
 #[test]
-fn guided_motion_gets_its_positions_and_a_module() {
+fn externally_guided_motion_gets_positions_and_a_module() {
     let folder = tempfile::tempdir().unwrap();
     let output = generate(folder.path(), &trajectory(2.0), &["--as", "egm"]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success(), "{}", stderr(&output));
     let rows = fs::read_to_string(folder.path().join("out/pointsMod.csv")).unwrap();
     assert_eq!(rows.lines().count(), 1 + 501);
     let module = fs::read_to_string(folder.path().join("out/pointsMod.mod")).unwrap();
@@ -122,7 +115,7 @@ fn guided_motion_gets_its_positions_and_a_module() {
 }
 
 #[test]
-fn what_cannot_be_done_writes_nothing_and_says_why() {
+fn unusable_input_is_refused_without_output() {
     for (csv, options, part) in [
         (trajectory(0.4), &[][..], "times as long"),
         (trajectory(2.0), &["--as", "movej"], "timed trajectory becomes joint targets"),
@@ -139,7 +132,7 @@ fn what_cannot_be_done_writes_nothing_and_says_why() {
     ] {
         let folder = tempfile::tempdir().unwrap();
         let output = generate(folder.path(), &csv, options);
-        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        let message = stderr(&output);
         assert_eq!(output.status.code(), Some(2), "{message}");
         assert!(message.contains(part), "{message}");
         assert_eq!(message.matches(part).count(), 1, "{message}");

@@ -1,21 +1,19 @@
 //! `identify` through the binary: contract, and unusable logs.
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
+mod command;
+
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 
+use command::{IRB1600 as ROBOT, joulepath, parsed, refused, run, stderr, stdout};
 use joulepath::arm::dynamics::{Data, Load, torque};
 use joulepath::arm::robot::{Provenance, find, load, to_toml};
 use serde_json::Value;
 
-const ROBOT: &str = "IRB1600-10/1.45";
 const ROWS: usize = 400;
-
-fn joulepath(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_joulepath")).args(args).output().unwrap()
-}
 
 /// Rows of `t`, positions, rates, accelerations and torques.
 fn rows() -> Vec<Vec<f64>> {
@@ -51,17 +49,22 @@ fn rows() -> Vec<Vec<f64>> {
 }
 
 fn header() -> Vec<String> {
-    let of = |name: &str| (1..=6).map(|joint| format!("{name}{joint}")).collect::<Vec<_>>();
-    [vec!["t".into()], of("q"), of("qd"), of("qdd"), of("tau")].concat()
+    let columns = |name: &str| (1..=6).map(|joint| format!("{name}{joint}")).collect::<Vec<_>>();
+    [vec!["t".into()], columns("q"), columns("qd"), columns("qdd"), columns("tau")].concat()
 }
 
-struct Bench {
+struct LogFolder {
     folder: tempfile::TempDir,
 }
 
-impl Bench {
-    fn new() -> Bench {
-        Bench { folder: tempfile::tempdir().unwrap() }
+impl LogFolder {
+    fn new() -> LogFolder {
+        LogFolder { folder: tempfile::tempdir().unwrap() }
+    }
+
+    /// A log with the rows of [`rows`], or similar ones.
+    fn log(&self, rows: &[Vec<f64>]) -> PathBuf {
+        self.write(&header(), &cells(rows), ",")
     }
 
     fn write(&self, header: &[String], rows: &[Vec<String>], separator: &str) -> PathBuf {
@@ -75,9 +78,17 @@ impl Bench {
     }
 }
 
+fn arguments<'a>(log: &'a Path, more: &[&'a str]) -> Vec<&'a str> {
+    [&["identify", "--robot", ROBOT, "--log", log.to_str().unwrap()], more].concat()
+}
+
 fn identify(log: &Path, more: &[&str]) -> Output {
-    let args = ["identify", "--robot", ROBOT, "--log", log.to_str().unwrap()];
-    joulepath(&[&args[..], more].concat())
+    run(&arguments(log, more))
+}
+
+/// The JSON of an identification.
+fn identified(log: &Path, more: &[&str]) -> Value {
+    parsed(&identify(log, &[more, &["--format", "json"]].concat()))
 }
 
 fn cells(rows: &[Vec<f64>]) -> Vec<Vec<String>> {
@@ -86,14 +97,12 @@ fn cells(rows: &[Vec<f64>]) -> Vec<Vec<String>> {
 
 #[test]
 fn the_result_has_the_fields_of_the_contract_and_the_model_predicts() {
-    let bench = Bench::new();
-    let log = bench.write(&header(), &cells(&rows()), ",");
-    let model = bench.folder.path().join("model.toml");
-    let page = bench.folder.path().join("page.html");
+    let logs = LogFolder::new();
+    let log = logs.log(&rows());
+    let model = logs.folder.path().join("model.toml");
+    let page = logs.folder.path().join("page.html");
     let out = ["--out", model.to_str().unwrap(), "--report", page.to_str().unwrap()];
-    let output = identify(&log, &[&out[..], &["--format", "json"]].concat());
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let found = identified(&log, &out);
     assert_eq!(found["rank"], 58);
     assert_eq!(found["base_parameters"].as_array().unwrap().len(), 58);
     assert_eq!(found["physically_consistent"], true);
@@ -111,9 +120,7 @@ fn the_result_has_the_fields_of_the_contract_and_the_model_predicts() {
 
     // `predict` and the JSON report the same error.
     let args = ["predict", "--robot", model.to_str().unwrap(), "--log", log.to_str().unwrap()];
-    let output = joulepath(&[&args[..], &["-q"]].concat());
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let text = String::from_utf8(output.stdout).unwrap();
+    let text = stdout(&run(&[&args[..], &["-q"]].concat()));
     let all = rows();
     for joint in 0..6 {
         let mut sum = 0.0;
@@ -122,17 +129,15 @@ fn the_result_has_the_fields_of_the_contract_and_the_model_predicts() {
             sum += (predicted - row[19 + joint]).powi(2);
         }
         let rms = (sum / all.len() as f64).sqrt();
-        let told = found["rms"]["train"][joint].as_f64().unwrap();
-        assert!((rms / told - 1.0).abs() < 1e-6, "{rms} {told}");
+        let reported = found["rms"]["train"][joint].as_f64().unwrap();
+        assert!((rms / reported - 1.0).abs() < 1e-6, "{rms} {reported}");
     }
-    let same = identify(&log, &["--format", "json", "-q"]);
-    let again: Value = serde_json::from_slice(&same.stdout).unwrap();
-    assert_eq!(again["base_parameters"], found["base_parameters"]);
+    assert_eq!(identified(&log, &[])["base_parameters"], found["base_parameters"]);
 }
 
 #[test]
-fn what_is_repaired_is_said() {
-    let bench = Bench::new();
+fn repairs_of_a_log_are_reported() {
+    let logs = LogFolder::new();
     let mut broken = cells(&rows());
     broken[10][3] = "NaN".into();
     broken[20][5] = "abc".into();
@@ -143,10 +148,8 @@ fn what_is_repaired_is_said() {
     }
     broken[60][0] = "-1e200".into();
     broken[70][0] = "5000".into();
-    let log = bench.write(&header(), &broken, ",");
-    let output = identify(&log, &[]);
-    assert!(output.status.success());
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    let log = logs.write(&header(), &broken, ",");
+    let message = stderr(&identify(&log, &[]));
     for text in [
         "row 12 left out: q3 is 'NaN'",
         "row 22",
@@ -156,31 +159,29 @@ fn what_is_repaired_is_said() {
         "row 62 left out: t is -1e200 s",
         "row 72 left out: the time leaps",
     ] {
-        assert!(said.contains(text), "{text}: {said}");
+        assert!(message.contains(text), "{text}: {message}");
     }
     // A note reports rates of only some joints as unusable.
     let mut few = header();
     few[12] = "other".into();
-    let output = identify(&bench.write(&few, &cells(&rows()), ","), &[]);
-    assert!(output.status.success());
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(said.contains("no column qd6: qd1, qd2, qd3, qd4, qd5 not used"), "{said}");
+    let message = stderr(&identify(&logs.write(&few, &cells(&rows()), ","), &[]));
+    assert!(message.contains("no column qd6: qd1, qd2, qd3, qd4, qd5 not used"), "{message}");
     // Semicolons and decimal commas give the same result.
-    let plain = bench.write(&header(), &cells(&rows()), ",");
+    let plain = logs.log(&rows());
     let expected = identify(&plain, &["-q"]).stdout;
     let commas: Vec<Vec<String>> = cells(&rows())
         .iter()
         .map(|row| row.iter().map(|cell| cell.replace('.', ",")).collect())
         .collect();
-    let log = bench.write(&header(), &commas, ";");
+    let log = logs.write(&header(), &commas, ";");
     assert_eq!(identify(&log, &["-q"]).stdout, expected);
-    let log = bench.write(&header(), &cells(&rows()), "|");
+    let log = logs.write(&header(), &cells(&rows()), "|");
     assert_eq!(identify(&log, &["-q"]).stdout, expected);
 }
 
 #[test]
-fn what_can_not_be_used_ends_with_the_way_out() {
-    let bench = Bench::new();
+fn unusable_logs_are_refused_with_the_way_out() {
+    let logs = LogFolder::new();
     let scaled = |columns: std::ops::Range<usize>, by: &dyn Fn(usize) -> f64| {
         let mut all = rows();
         for row in &mut all {
@@ -237,18 +238,15 @@ fn what_can_not_be_used_ends_with_the_way_out() {
         ((header(), cells(&rows()[..3])), "3 usable rows"),
         ((header(), cells(&rows()[..15])), "usable equations"),
     ] {
-        let log = bench.write(&header, &rows, ",");
-        let output = identify(&log, &[]);
-        let text = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(2), "{message}: {text}");
-        assert!(text.contains(message), "{message}: {text}");
+        let log = logs.write(&header, &rows, ",");
+        refused(&arguments(&log, &[]), message);
     }
 }
 
 /// Torques unrelated to the motion: reversed, delayed, or noise.
 #[test]
-fn torques_of_something_else_are_no_model() {
-    let bench = Bench::new();
+fn torques_unrelated_to_the_motion_are_refused() {
+    let logs = LogFolder::new();
     let tau = 19..25;
     let all = rows();
     let reversed: Vec<Vec<f64>> = all
@@ -261,10 +259,9 @@ fn torques_of_something_else_are_no_model() {
         .map(|row| [&row[..19], &all[random.usize(..all.len())][19..25]].concat())
         .collect();
     for (rows, message) in [(reversed, "would give power"), (mixed, "explains")] {
-        let output = identify(&bench.write(&header(), &cells(&rows), ","), &[]);
-        let text = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(2), "{message}: {text}");
-        assert!(text.contains("no robot that can be") && text.contains(message), "{text}");
+        let log = logs.log(&rows);
+        let text = refused(&arguments(&log, &[]), message);
+        assert!(text.contains("no robot that can be"), "{text}");
     }
     // Half a second has 20 rows.
     let late: Vec<Vec<f64>> = all
@@ -272,24 +269,23 @@ fn torques_of_something_else_are_no_model() {
         .zip(&all[20..])
         .map(|(old, new)| [&new[..19], &old[tau.clone()]].concat())
         .collect();
-    let output = identify(&bench.write(&header(), &cells(&late), ","), &[]);
-    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    let log = logs.log(&late);
+    let text = stderr(&joulepath(&arguments(&log, &[])));
     assert!(text.contains("0.50 s later than the positions"), "{text}");
 }
 
 /// The many parameters explain a disturbance of three seconds, but do not predict it.
 #[test]
-fn what_explains_only_its_own_data_is_not_good() {
-    let bench = Bench::new();
+fn an_overfitted_model_is_not_graded_good() {
+    let logs = LogFolder::new();
     let mut all = rows();
     all.truncate(120);
     for row in &mut all {
         let astray = 6.0 * (2.0 * row[0]).sin();
         row[22] += astray;
     }
-    let log = bench.write(&header(), &cells(&all), ",");
-    let output = identify(&log, &["--format", "json"]);
-    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let log = logs.log(&all);
+    let found = identified(&log, &[]);
     let quality = &found["quality"];
     let share = |key: &str| quality[key][3].as_f64().unwrap();
     assert!(share("explained") > 0.7 && share("predicted") < 0.7, "{quality}");
@@ -297,19 +293,18 @@ fn what_explains_only_its_own_data_is_not_good() {
 }
 
 #[test]
-fn a_constant_joint_is_named() {
-    let bench = Bench::new();
+fn a_joint_that_does_not_move_is_reported() {
+    let logs = LogFolder::new();
     let mut all = rows();
     for row in &mut all {
         row[4] = 0.3;
         row[10] = 0.0;
         row[16] = 0.0;
     }
-    let log = bench.write(&header(), &cells(&all), ",");
+    let log = logs.log(&all);
     let output = identify(&log, &["--format", "json"]);
-    assert!(output.status.success());
-    assert!(String::from_utf8_lossy(&output.stderr).contains("joint 4 does not move"));
-    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(stderr(&output).contains("joint 4 does not move"));
+    let found = parsed(&output);
     let missing = found["not_determined"].as_array().unwrap();
     assert!(missing.iter().any(|entry| entry["name"] == "fc4"), "{missing:?}");
     assert_eq!(found["joints"][3]["coulomb"], Value::Null);
@@ -319,27 +314,24 @@ fn a_constant_joint_is_named() {
 /// The fit of the paper cannot be better than the unconstrained one; it starts with the true
 /// parameters of the robot file.
 #[test]
-fn the_descent_of_the_paper_comes_near_the_free_fit() {
-    let bench = Bench::new();
-    let log = bench.write(&header(), &cells(&rows()), ",");
-    let ordinary = ["--method", "ordinary", "--descent", "--format", "json", "-q"];
-    let output = identify(&log, &ordinary);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
-    let of = |list: &Value| -> Vec<f64> {
+fn the_descent_of_the_paper_is_close_to_the_unconstrained_fit() {
+    let logs = LogFolder::new();
+    let log = logs.log(&rows());
+    let found = identified(&log, &["--method", "ordinary", "--descent"]);
+    let numbers = |list: &Value| -> Vec<f64> {
         list.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
     };
     let total = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let free = total(&of(&found["unconstrained_rms"]["train"]));
-    let descent = total(&of(&found["descent"]["rms_by_joint"]));
+    let free = total(&numbers(&found["unconstrained_rms"]["train"]));
+    let descent = total(&numbers(&found["descent"]["rms_by_joint"]));
     assert!((1.0..1.1).contains(&(descent / free)), "{descent} {free}");
     let [first, last] = ["first_rms", "rms"].map(|key| found["descent"][key].as_f64().unwrap());
     assert!(last <= first, "{first} {last}");
 }
 
 /// A robot file with masses and without gear ratios.
-fn without_motors(bench: &Bench) -> PathBuf {
-    let robot = bench.folder.path().join("direct.toml");
+fn without_motors(logs: &LogFolder) -> PathBuf {
+    let robot = logs.folder.path().join("direct.toml");
     let text = to_toml(&find(ROBOT).unwrap());
     let mut lines: Vec<&str> = Vec::new();
     let mut of_motors = false;
@@ -357,29 +349,29 @@ fn without_motors(bench: &Bench) -> PathBuf {
 
 /// Without gear ratios, motor torques are recognised only by the carried weight.
 #[test]
-fn torques_that_carry_too_little_are_no_good_model() {
-    let bench = Bench::new();
-    let robot = without_motors(&bench);
+fn torques_too_small_for_the_weight_are_graded_poor() {
+    let logs = LogFolder::new();
+    let robot = without_motors(&logs);
     let ratio = find(ROBOT).unwrap().motors.unwrap().ratio;
     let mut all = rows();
     for row in &mut all {
         row[19..25].iter_mut().zip(&ratio).for_each(|(tau, ratio)| *tau /= ratio);
     }
-    let log = bench.write(&header(), &cells(&all), ",");
+    let log = logs.log(&all);
     let [robot, log] = [&robot, &log].map(|path| path.to_str().unwrap());
     let output = joulepath(&["identify", "--robot", robot, "--log", log, "--format", "json"]);
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(said.contains("multiply each tau by its ratio"), "{said}");
-    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let message = stderr(&output);
+    assert!(message.contains("multiply each tau by its ratio"), "{message}");
+    let found = parsed(&output);
     assert_eq!(found["quality"]["grade"], "poor", "{}", found["quality"]);
     assert!(found["quality"]["statement"].as_str().unwrap().contains("weight"));
 }
 
 /// With a URDF without gear ratios the rotors are at the joints; the written model can be read.
 #[test]
-fn a_model_without_ratios_is_written_so_that_it_can_be_read() {
-    let bench = Bench::new();
-    let robot = without_motors(&bench);
+fn a_model_without_gear_ratios_can_be_read_back() {
+    let logs = LogFolder::new();
+    let robot = without_motors(&logs);
     // Heavy rotors on all joints.
     let mut all = rows();
     for row in &mut all {
@@ -387,20 +379,18 @@ fn a_model_without_ratios_is_written_so_that_it_can_be_read() {
             row[19 + joint] += 3.0 * row[13 + joint];
         }
     }
-    let log = bench.write(&header(), &cells(&all), ",");
-    let model = bench.folder.path().join("model.toml");
+    let log = logs.log(&all);
+    let model = logs.folder.path().join("model.toml");
     let [robot, log, model] = [&robot, &log, &model].map(|path| path.to_str().unwrap());
-    let output = joulepath(&["identify", "--robot", robot, "--log", log, "--out", model]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let output = joulepath(&["predict", "--robot", model, "--log", log]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    run(&["identify", "--robot", robot, "--log", log, "--out", model]);
+    run(&["predict", "--robot", model, "--log", log]);
     let rotors = load(model).unwrap().motors.unwrap().rotor_inertia;
     assert!(rotors.iter().any(|inertia| *inertia > 1.0), "{rotors:?}");
 }
 
 #[test]
-fn a_log_in_which_nothing_moves_is_refused() {
-    let bench = Bench::new();
+fn a_log_without_motion_is_refused() {
+    let logs = LogFolder::new();
     let first = rows().remove(0);
     let still: Vec<Vec<f64>> = (0..ROWS)
         .map(|k| {
@@ -412,23 +402,19 @@ fn a_log_in_which_nothing_moves_is_refused() {
         .collect();
     let names = header();
     let names = [&names[..7], &names[19..25]].concat();
-    let output = identify(&bench.write(&names, &cells(&still), ","), &[]);
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(2), "{said}");
-    assert!(said.contains("no joint moves"), "{said}");
+    let log = logs.write(&names, &cells(&still), ",");
+    refused(&arguments(&log, &[]), "no joint moves");
 }
 
 #[test]
-fn options_that_do_not_fit_the_logs_are_said() {
-    let bench = Bench::new();
-    let log = bench.write(&header(), &cells(&rows()), ",");
+fn options_that_do_not_fit_the_logs_are_reported() {
+    let logs = LogFolder::new();
+    let log = logs.log(&rows());
     let log = log.to_str().unwrap();
     let args = ["identify", "--robot", ROBOT, "--log", log, log];
-    let output = joulepath(&[&args[..], &["--validate", log, "--period", "3"]].concat());
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.success(), "{said}");
+    let message = stderr(&run(&[&args[..], &["--validate", log, "--period", "3"]].concat()));
     for text in ["it counts twice", "that the model was fitted to", "--period 3 is not used"] {
-        assert_eq!(said.matches(text).count(), 1, "{text}: {said}");
+        assert_eq!(message.matches(text).count(), 1, "{text}: {message}");
     }
     for (option, value, text) in [
         ("--date", "2026-02-29", "2026-11-30"),
@@ -437,16 +423,14 @@ fn options_that_do_not_fit_the_logs_are_said() {
         ("--period", "-1", "more than 0"),
         ("--period", "1e300", "at most 100000"),
     ] {
-        let output = joulepath(&[&args[..], &[option, value]].concat());
-        assert_eq!(output.status.code(), Some(2));
-        assert!(String::from_utf8_lossy(&output.stderr).contains(text), "{option} {value}");
+        refused(&[&args[..], &[option, value]].concat(), text);
     }
 }
 
 /// With a delay of 10 to 100 ms torques are still explained well; the delay is reported.
 #[test]
-fn a_short_delay_is_named() {
-    let bench = Bench::new();
+fn a_short_delay_is_reported() {
+    let logs = LogFolder::new();
     for (delay, least, most) in [(0, f64::NAN, f64::NAN), (1, 0.015, 0.035), (3, 0.06, 0.09)] {
         let all = rows();
         let late: Vec<Vec<f64>> = all
@@ -454,15 +438,13 @@ fn a_short_delay_is_named() {
             .zip(&all[delay..])
             .map(|(old, new)| [&new[..19], &old[19..25]].concat())
             .collect();
-        let output =
-            identify(&bench.write(&header(), &cells(&late), ","), &["--format", "json", "-q"]);
-        let found: Value = serde_json::from_slice(&output.stdout).unwrap();
-        let told = found["quality"]["torques_late_s"].as_f64();
+        let found = identified(&logs.log(&late), &[]);
+        let reported = found["quality"]["torques_late_s"].as_f64();
         if delay == 0 {
-            assert_eq!(told, None);
+            assert_eq!(reported, None);
             assert_eq!(found["quality"]["grade"], "good");
         } else {
-            assert!((least..most).contains(&told.unwrap()), "{told:?}");
+            assert!((least..most).contains(&reported.unwrap()), "{reported:?}");
             assert_eq!(found["quality"]["grade"], "fair");
         }
     }
@@ -470,59 +452,55 @@ fn a_short_delay_is_named() {
 
 /// One motor-side joint makes a model bad, independent of the other joints.
 #[test]
-fn the_worst_joint_counts() {
-    let bench = Bench::new();
+fn the_worst_joint_determines_the_grade() {
+    let logs = LogFolder::new();
     let mut all = rows();
     let mut random = fastrand::Rng::with_seed(3);
     for row in &mut all {
         row[21] = 200.0 * (random.f64() - 0.5);
     }
-    let log = bench.write(&header(), &cells(&all), ",");
-    let output = identify(&log, &["--format", "json", "-q"]);
-    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let log = logs.log(&all);
+    let found = identified(&log, &[]);
     assert_eq!(found["quality"]["grade"], "poor", "{}", found["quality"]);
 }
 
 /// The held-out error is that of the written model, not of the unconstrained fit.
 #[test]
-fn without_other_logs_the_written_model_is_judged() {
-    let bench = Bench::new();
+fn the_validation_error_is_that_of_the_written_model() {
+    let logs = LogFolder::new();
     let mut all = rows();
     // Negative friction, which no physical model has.
     for row in &mut all {
         row[20] -= 200.0 * row[8].signum();
     }
-    let log = bench.write(&header(), &cells(&all), ",");
-    let output = identify(&log, &["--format", "json", "-q"]);
-    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
-    let of = |key: &str| found[key]["validation"][1].as_f64().unwrap();
-    assert!(of("rms") > 2.0 * of("unconstrained_rms"), "{found}");
+    let log = logs.log(&all);
+    let found = identified(&log, &[]);
+    let validation = |key: &str| found[key]["validation"][1].as_f64().unwrap();
+    assert!(validation("rms") > 2.0 * validation("unconstrained_rms"), "{found}");
 }
 
 #[test]
-fn many_rows_of_one_kind_are_summed_up() {
-    let bench = Bench::new();
+fn many_rejected_rows_are_summarised() {
+    let logs = LogFolder::new();
     let mut broken = cells(&rows());
     for row in broken.iter_mut().step_by(20) {
         row[3] = "NaN".into();
     }
-    let output = identify(&bench.write(&header(), &broken, ","), &[]);
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(said.matches("left out: q3").count(), 3, "{said}");
-    assert!(said.contains("17 more rows left out"), "{said}");
+    let message = stderr(&identify(&logs.write(&header(), &broken, ","), &[]));
+    assert_eq!(message.matches("left out: q3").count(), 3, "{message}");
+    assert!(message.contains("17 more rows left out"), "{message}");
 }
 
 #[test]
-fn what_a_resting_joint_keeps_is_not_called_identified() {
-    let bench = Bench::new();
+fn values_of_a_resting_joint_are_not_called_identified() {
+    let logs = LogFolder::new();
     let mut all = rows();
     for row in &mut all {
         (row[4], row[10], row[16]) = (0.3, 0.0, 0.0);
     }
-    let log = bench.write(&header(), &cells(&all), ",");
-    let model = bench.folder.path().join("model.toml");
-    let output = identify(&log, &["--out", model.to_str().unwrap(), "-q"]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let log = logs.log(&all);
+    let model = logs.folder.path().join("model.toml");
+    identify(&log, &["--out", model.to_str().unwrap(), "-q"]);
     let found = load(model.to_str().unwrap()).unwrap();
     let coulomb = found.origins.iter().find(|o| o.table == "friction" && o.key == "coulomb");
     let coulomb = coulomb.unwrap();

@@ -3,70 +3,38 @@
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 #![expect(clippy::print_stderr, reason = "tests report figures and what they skip")]
 
-use std::fmt::Write as _;
-use std::fs;
-use std::path::Path;
+#[path = "support/measurements.rs"]
+mod measurements;
+#[path = "support/real_logs.rs"]
+mod real_logs;
 
 use joulepath::arm::effects::from_toml;
 use joulepath::arm::robot::{import_urdf, to_toml};
-use joulepath::learn::identify::{
-    Free, Hints, Identified, Settings, Source, Weighting, identify, prepare, torques,
-};
-use joulepath::learn::log::{ColumnMap, Log, read_csv};
+use joulepath::learn::identify::{Free, Identified, Settings, Weighting, identify};
+use measurements::shared;
+use real_logs::{PANDA, RealRobot, TX40, UR10, log, split};
 
 /// Training shares of the time; the rest is predicted. The first is compared with known results.
 const TRAINED: [[f64; 2]; 3] = [[0.0, 0.7], [0.3, 1.0], [0.0, 0.5]];
 /// Largest ratio of residuals, written model to unconstrained fit, over all joints.
 const CONSISTENT: f64 = 1.02;
 
-fn shared(path: &str) -> Option<String> {
-    let full = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(path);
-    if let Ok(text) = fs::read_to_string(&full) {
-        return Some(text);
-    }
-    assert!(std::env::var("CI").as_deref() != Ok("true"), "{} is missing", full.display());
-    eprintln!("skipped: {} is missing", full.display());
-    None
-}
-
-/// A log of a range of rows.
-fn rows(log: &Log, range: std::ops::Range<usize>) -> Log {
-    Log {
-        channels: log.channels.clone(),
-        values: log.values.iter().map(|x| x[range.clone()].to_vec()).collect(),
-        rows: log.rows[range].to_vec(),
-        rejected: Vec::new(),
-        degrees: log.degrees.clone(),
-    }
-}
-
-fn identified(urdf: &str, csv: &str, joints: usize, rates: bool) -> Option<Identified> {
-    let (robot, log) = (shared(urdf)?, shared(csv)?);
-    let model = from_toml(urdf, &import_urdf(urdf, &robot).unwrap()).unwrap();
-    let mut map = String::from("t=t_s");
-    for joint in 1..=joints {
-        let _ = write!(map, ",q{joint}=q_rad_{joint},tau{joint}=tau_Nm_{joint}");
-        if rates {
-            let _ = write!(map, ",qd{joint}=qd_rad_s_{joint}");
-        }
-    }
-    let log = read_csv(log.as_bytes(), &ColumnMap::parse(&map).unwrap()).unwrap();
+fn identified(robot: &RealRobot) -> Option<Identified> {
+    let (urdf, csv) = (shared(robot.urdf)?, shared(robot.csv)?);
+    let model = from_toml(robot.urdf, &import_urdf(robot.urdf, &urdf).unwrap()).unwrap();
+    let log = log(&model, &csv, robot);
     let count = log.time().len();
-    let samples =
-        |log: &Log, hints: Hints| prepare(log, &torques(&model, log).unwrap().tau, hints).unwrap();
     let mut first = None;
     for share in TRAINED {
         let [from, to] = share.map(|share| (share * count as f64) as usize);
         let rest = if from == 0 { to..count } else { 0..from };
-        let training = samples(&rows(&log, from..to), Hints::default());
-        let Source::Filtered { cutoff } = training.source else { panic!("{:?}", training.source) };
-        let held_out = samples(&rows(&log, rest), Hints { period: None, cutoff: Some(cutoff) });
+        let [training, held_out] = split(&model, &log, [from..to, rest]);
         let settings =
             Settings { free: Free::All, weighting: Weighting::Joint, source: "a test".into() };
         let found = identify(&model, &training, &[held_out], &settings).unwrap();
         assert!(found.physically_consistent);
         assert_eq!(found.quality.late, None);
-        misses_little_more(urdf, &found);
+        assert_close_to_the_unconstrained_fit(robot.urdf, &found);
         // The written model is read without a change.
         let again = from_toml("written", &to_toml(&found.model)).unwrap();
         assert_eq!(again.sensors, found.model.sensors);
@@ -76,7 +44,7 @@ fn identified(urdf: &str, csv: &str, joints: usize, rates: bool) -> Option<Ident
 }
 
 /// The written model compared with the unconstrained fit, on held-out time.
-fn misses_little_more(name: &str, found: &Identified) {
+fn assert_close_to_the_unconstrained_fit(name: &str, found: &Identified) {
     let free = &found.unconstrained_validation.as_ref().unwrap().rms;
     let written = &found.validation.as_ref().unwrap().rms;
     let ratios: Vec<f64> = written.iter().zip(free).map(|(a, b)| a / b).collect();
@@ -105,8 +73,7 @@ fn compare(name: &str, found: &Identified, known: &[f64]) {
 
 #[test]
 fn staubli_tx40_has_the_published_friction_and_a_coupled_wrist() {
-    let (urdf, csv) = ("tx40/tx40_mdh_modified.urdf", "tx40/tx40_joint_space.csv");
-    let Some(found) = identified(urdf, csv, 6, false) else { return };
+    let Some(found) = identified(&TX40) else { return };
     compare("TX40", &found, &[2.6, 3.0, 1.5, 0.70, 1.33, 0.70]);
     assert_eq!(found.fit.solution.determined.len(), 58);
     let coupling = found.coupling.unwrap();
@@ -141,20 +108,16 @@ fn staubli_tx40_has_the_published_friction_and_a_coupled_wrist() {
 }
 
 #[test]
-fn universal_robots_ur10() {
-    let (urdf, csv) =
-        ("ur10_unisa/ur10_cb3_mdh_dummy_inertia.urdf", "ur10_unisa/ur10_exciting_trajectory.csv");
-    let Some(found) = identified(urdf, csv, 6, true) else { return };
+fn a_ur10_is_predicted_within_the_known_errors() {
+    let Some(found) = identified(&UR10) else { return };
     assert_eq!(found.coupling, None);
     // For joint 4, 0.56 is known from another part of the time.
     compare("UR10", &found, &[3.2, 3.5, 2.0, 0.85, 0.60, 2.0]);
 }
 
 #[test]
-fn franka_panda() {
-    let (urdf, csv) =
-        ("ur10_unisa/panda_mdh_dummy_inertia.urdf", "ur10_unisa/panda_exciting_trajectory.csv");
-    let Some(found) = identified(urdf, csv, 7, true) else { return };
+fn a_panda_is_predicted_within_the_known_errors() {
+    let Some(found) = identified(&PANDA) else { return };
     // For joint 4, 0.17 is known from another part of the time.
     compare("Panda", &found, &[0.28, 0.18, 0.23, 0.19, 0.15, 0.11, 0.08]);
 }

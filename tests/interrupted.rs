@@ -1,10 +1,13 @@
 //! Output is written completely or not at all, and a second retrofit changes nothing.
 #![expect(clippy::unwrap_used, reason = "a failed set-up fails the test")]
 
-use std::collections::BTreeMap;
+mod command;
+
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
+
+use command::{files, parsed};
 
 /// Number of kill times within the duration of a run.
 const KILLS: u32 = 12;
@@ -17,19 +20,8 @@ fn optimize(program: &str, out: &Path) -> Command {
     command
 }
 
-/// All files of a folder with their bytes.
-fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let entries = std::fs::read_dir(folder).unwrap().map(Result::unwrap);
-    entries
-        .map(|entry| {
-            let name = entry.file_name().to_string_lossy().into_owned();
-            (name, std::fs::read(entry.path()).unwrap())
-        })
-        .collect()
-}
-
 #[test]
-fn a_kill_at_any_moment_leaves_all_or_nothing() {
+fn killing_a_run_leaves_complete_output_or_none() {
     let folder = tempfile::tempdir().unwrap();
     let program = "fixtures/hard/encoding.mod";
     let whole = folder.path().join("whole");
@@ -55,7 +47,7 @@ fn a_kill_at_any_moment_leaves_all_or_nothing() {
 }
 
 #[test]
-fn its_own_output_has_nothing_left_to_do() {
+fn a_second_retrofit_changes_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let (once, twice) = (folder.path().join("once"), folder.path().join("twice"));
     assert!(optimize("fixtures/paper", &once).status().unwrap().success());
@@ -64,7 +56,7 @@ fn its_own_output_has_nothing_left_to_do() {
     let output = again.output().unwrap();
     assert!(output.status.success());
     assert_eq!(files(&once), files(&twice));
-    let result: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let result = parsed(&output);
     let notes = result["notes"].to_string();
     assert!(notes.contains("every file stays as it was"), "{notes}");
     assert!(result["segments"].as_array().unwrap().iter().all(|s| s["rewritten"] == false));

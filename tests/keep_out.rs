@@ -3,18 +3,17 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
+mod command;
+
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
+use command::{IRB1600 as ROBOT, KNOWN_LIMITS, number, run_in};
 use joulepath::arm::kinematics::{Body, Capsule};
 use joulepath::arm::robot::find;
 use nalgebra::{Point3, Vector3};
 use serde_json::Value;
 
-const ROBOT: &str = "IRB1600-10/1.45";
-/// The robot with known limits.
-const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/known_limits.toml");
 /// A movement and its return with a tool, away from the limits.
 const PROGRAM: &str = "MODULE M\n\
     PERS tooldata tLong:=[TRUE,[[0,0,180],[1,0,0,0]],[2,[0,0,60],[1,0,0,0],0,0,0]];\n\
@@ -47,7 +46,7 @@ struct Run {
 
 impl Run {
     fn energy(&self) -> f64 {
-        self.result["optimized"]["motion_energy_j"].as_f64().unwrap()
+        number(&self.result, "/optimized/motion_energy_j")
     }
 
     /// The lowest point of arm and tool in the direction `along`, and its position along it.
@@ -60,37 +59,15 @@ impl Run {
     }
 }
 
-fn joulepath(arguments: &[&str]) -> Vec<u8> {
-    let output = Command::new(env!("CARGO_BIN_EXE_joulepath")).args(arguments).output().unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    output.stdout
-}
-
 fn optimized(config: &str, options: &[&str]) -> Run {
     let folder = tempfile::tempdir().unwrap();
-    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
-    let (input, out, csv) = (at("m.mod"), at("out"), at("t.csv"));
-    fs::write(&input, PROGRAM).unwrap();
-    fs::write(at("joulepath.toml"), config).unwrap();
-    let common = [
-        "optimize",
-        &input,
-        "--robot",
-        KNOWN,
-        "--format",
-        "json",
-        "--out",
-        &out,
-        "--allow-faster-joints",
-        "--layout",
-        "plain",
-    ];
-    let result: Value =
-        serde_json::from_slice(&joulepath(&[&common[..], options].concat())).unwrap();
-    assert_eq!(result["verification"]["passed"], true);
-    joulepath(&["simulate", &out, "--robot", KNOWN, "--trajectory", &csv]);
-    let text = fs::read_to_string(folder.path().join("out/Joulepath.mod")).unwrap();
-    Run { result, motion: motion(Path::new(&csv)), polygon: polygon(&text) }
+    let folder = folder.path();
+    fs::write(folder.join("joulepath.toml"), config).unwrap();
+    let common = ["--robot", KNOWN_LIMITS, "--allow-faster-joints", "--layout", "plain"];
+    let result = command::optimize(folder, PROGRAM, &[&common[..], options].concat());
+    run_in(folder, &["simulate", "out", "--robot", KNOWN_LIMITS, "--trajectory", "t.csv"]);
+    let text = fs::read_to_string(folder.join("out/Joulepath.mod")).unwrap();
+    Run { result, motion: motion(&folder.join("t.csv")), polygon: polygon(&text) }
 }
 
 /// The polygons of all streams in a module's text.
@@ -143,7 +120,7 @@ fn surface(motion: &[Vec<f64>]) -> impl Iterator<Item = (Point3<f64>, f64)> {
 }
 
 /// Least distance of arm and tool from a box, negative inside.
-fn room(motion: &[Vec<f64>], corners: &[Point3<f64>; 2]) -> f64 {
+fn clearance(motion: &[Vec<f64>], corners: &[Point3<f64>; 2]) -> f64 {
     let distance = |point: &Point3<f64>| {
         let outside: Vector3<f64> = (corners[0] - point).sup(&(point - corners[1]));
         let far = outside.map(|x| x.max(0.0)).norm();
@@ -153,7 +130,7 @@ fn room(motion: &[Vec<f64>], corners: &[Point3<f64>; 2]) -> f64 {
 }
 
 /// Positions of the tool tip along the motion, and its radius.
-fn tips(motion: &[Vec<f64>]) -> Vec<(Point3<f64>, f64)> {
+fn tool_tips(motion: &[Vec<f64>]) -> Vec<(Point3<f64>, f64)> {
     let model = find(ROBOT).unwrap();
     let body = Body::new(&model, TOOL.into(), &[]);
     let tool = motion.iter().map(|q| body.capsules(q).pop().unwrap());
@@ -162,19 +139,19 @@ fn tips(motion: &[Vec<f64>]) -> Vec<(Point3<f64>, f64)> {
 
 /// For each position of the tip on a motion, the vector from the nearest one on the original, the
 /// position, and the radius.
-fn aways(original: &[Vec<f64>], motion: &[Vec<f64>]) -> Vec<(Vector3<f64>, Point3<f64>, f64)> {
-    let original = tips(original);
+fn deviations(original: &[Vec<f64>], motion: &[Vec<f64>]) -> Vec<(Vector3<f64>, Point3<f64>, f64)> {
+    let original = tool_tips(original);
     let away = |tip: &Point3<f64>| {
         let all = original.iter().map(|(other, _)| tip - other);
         all.min_by(|a, b| a.norm().total_cmp(&b.norm())).unwrap()
     };
-    tips(motion).into_iter().map(|(tip, radius)| (away(&tip), tip, radius)).collect()
+    tool_tips(motion).into_iter().map(|(tip, radius)| (away(&tip), tip, radius)).collect()
 }
 
 /// The largest distance from the original along an axis: the axis, the point on the tool surface,
 /// and the distance.
 fn excursion(kept: &Run, free: &Run) -> (Vector3<f64>, Point3<f64>, f64) {
-    let all = aways(&kept.motion, &free.motion).into_iter().map(|(away, tip, radius)| {
+    let all = deviations(&kept.motion, &free.motion).into_iter().map(|(away, tip, radius)| {
         let mut axis = Vector3::zeros();
         axis[away.iamax()] = away[away.iamax()].signum();
         (axis, tip + axis * radius, away.dot(&axis))
@@ -185,7 +162,7 @@ fn excursion(kept: &Run, free: &Run) -> (Vector3<f64>, Point3<f64>, f64) {
 /// A small box that a motion enters and the original does not, as far from the original as
 /// possible: its centre and half its width.
 fn small_box(original: &[Vec<f64>], motion: &[Vec<f64>]) -> (Point3<f64>, f64) {
-    let mut all = aways(original, motion);
+    let mut all = deviations(original, motion);
     all.sort_by(|a, b| b.0.norm().total_cmp(&a.0.norm()));
     let around = |(away, tip, radius): &(Vector3<f64>, Point3<f64>, f64)| {
         (tip + away.normalize() * *radius, 0.3 * away.norm())
@@ -209,7 +186,7 @@ fn distance(motion: &[Vec<f64>], point: &Point3<f64>) -> f64 {
 }
 
 #[test]
-fn free_paths_go_round_a_box() {
+fn free_paths_avoid_a_box() {
     let (kept, free) = (optimized("", &[]), optimized("", &FREE));
     let (axis, point, depth) = excursion(&kept, &free);
     assert!(depth > 0.02, "the free motion leaves the original by {depth} m only");
@@ -219,11 +196,11 @@ fn free_paths_go_round_a_box() {
     let across = Vector3::repeat(WIDTH) - axis.abs() * WIDTH;
     let (one, other) = (face - across, face + across + axis * (2.0 * WIDTH));
     let corners = [one.inf(&other), one.sup(&other)];
-    assert!(room(&free.motion, &corners) < -0.01 && room(&kept.motion, &corners) > 0.0);
+    assert!(clearance(&free.motion, &corners) < -0.01 && clearance(&kept.motion, &corners) > 0.0);
     let [lo, hi] = corners.map(|corner| format!("{:?}", corner.coords.as_slice()));
     let boxed = optimized(&format!("[[keep_out]]\nbox = [{lo}, {hi}]\n"), &FREE);
     for way in [&boxed.motion, &boxed.polygon] {
-        let left = room(way, &corners);
+        let left = clearance(way, &corners);
         assert!(left > -ROUNDING, "{left} m beside the box");
     }
     let energies = [&free, &boxed, &kept].map(Run::energy);
@@ -233,7 +210,7 @@ fn free_paths_go_round_a_box() {
 
 /// A kept path has a tolerance of millimetres, and these must not enter a box either.
 #[test]
-fn kept_paths_and_their_polygons_go_round_a_box() {
+fn kept_paths_and_their_polygons_avoid_a_box() {
     let kept = optimized("", &[]);
     let programmed: Vec<Vec<f64>> = (0..=2000)
         .map(|i| f64::from(i) / 2000.0)
@@ -258,18 +235,19 @@ fn kept_paths_and_their_polygons_go_round_a_box() {
 }
 
 #[test]
-fn free_paths_in_an_unknown_cell_are_warned_of() {
+fn free_paths_without_keep_out_zones_cause_a_warning() {
     let warning = |run: &Run| {
         let notes = run.result["notes"].as_array().unwrap().iter();
-        let mut told = notes.filter_map(Value::as_str).filter(|note| note.starts_with("warning: "));
-        told.next().map(str::to_owned)
+        let mut reported =
+            notes.filter_map(Value::as_str).filter(|note| note.starts_with("warning: "));
+        reported.next().map(str::to_owned)
     };
     let free = optimized("", &FREE);
-    let told = warning(&free).unwrap();
+    let reported = warning(&free).unwrap();
     let farthest = free.result["verification"]["max_path_deviation_m"].as_f64().unwrap();
     assert!(farthest > 0.02, "{farthest}");
-    assert!(told.contains(&format!("by up to {:.1} mm", 1e3 * farthest)), "{told}");
-    assert!(told.contains("no keep-out is configured"), "{told}");
+    assert!(reported.contains(&format!("by up to {:.1} mm", 1e3 * farthest)), "{reported}");
+    assert!(reported.contains("no keep-out is configured"), "{reported}");
     assert_eq!(warning(&optimized("", &[])), None);
     let known = "[[keep_out]]\nplane = [0, 0, 1, -1]\n";
     assert_eq!(warning(&optimized(known, &FREE)), None);
@@ -296,7 +274,7 @@ fn free_paths_stay_on_one_side_of_a_plane() {
 }
 
 #[test]
-fn a_path_that_is_not_clear_itself_is_kept_and_says_so() {
+fn a_path_through_a_keep_out_zone_is_kept_with_a_reason() {
     let kept = optimized("", &[]);
     let down = Vector3::z();
     let level = kept.deepest(&down).1 + 0.01;

@@ -3,6 +3,9 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
+mod arms;
+
+use arms::{pose_distance, same_angles};
 use insta::assert_snapshot;
 use joulepath::arm::kinematics::{
     Conf, IkError, Tcp, conf_of, fk, ik_all, ik_conf, ik_near, jacobian, limits_ok,
@@ -35,15 +38,6 @@ fn tool() -> Isometry3<f64> {
     )
 }
 
-fn same_angle(a: f64, b: f64) -> bool {
-    let d = (a - b).rem_euclid(std::f64::consts::TAU);
-    d.min(std::f64::consts::TAU - d) < SAME_ANGLE
-}
-
-fn distance(a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
-    (a.translation.vector - b.translation.vector).norm().max(a.rotation.angle_to(&b.rotation))
-}
-
 /// Joint angles at shares 0 to 1 of the position ranges.
 fn inside(model: &Model, shares: [f64; 6]) -> [f64; 6] {
     std::array::from_fn(|i| {
@@ -60,20 +54,20 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..Default::default() })]
 
     #[test]
-    fn inverse_contains_the_angles(shares in shares(), which in 0usize..3) {
+    fn inverse_kinematics_contain_the_original_angles(shares in shares(), which in 0usize..3) {
         let model = &robots()[which];
         let q = inside(model, shares);
         let pose = fk(model, &q);
         let all = ik_all(model, &pose).unwrap();
         for solution in &all {
-            prop_assert!(distance(&fk(model, solution), &pose) < SAME_POSE);
+            prop_assert!(pose_distance(&fk(model, solution), &pose) < SAME_POSE);
         }
-        let hit = all.iter().any(|s| s.iter().zip(&q).all(|(a, b)| same_angle(*a, *b)));
+        let hit = all.iter().any(|solution| same_angles(solution, &q, SAME_ANGLE));
         prop_assert!(hit, "{q:?} not in {all:?}");
     }
 
     #[test]
-    fn configuration_leads_back(shares in shares(), which in 0usize..2) {
+    fn the_configuration_selects_the_original_angles(shares in shares(), which in 0usize..2) {
         let model = &robots()[which];
         let q = inside(model, shares);
         let found = ik_conf(model, &fk(model, &q), conf_of(model, &q)).unwrap();
@@ -109,7 +103,7 @@ proptest! {
     }
 
     #[test]
-    fn jacobian_is_the_change_of_pose(shares in shares(), which in 0usize..3) {
+    fn jacobian_is_the_derivative_of_the_pose(shares in shares(), which in 0usize..3) {
         let model = &robots()[which];
         let q = inside(model, shares);
         let tool = tool();
@@ -132,7 +126,7 @@ proptest! {
     }
 
     #[test]
-    fn jacobian_dot_is_the_change_of_the_jacobian(
+    fn jacobian_dot_is_the_derivative_of_the_jacobian(
         shares in shares(),
         qd in prop::array::uniform6(-3.0..3.0),
         which in 0usize..3,
@@ -148,7 +142,7 @@ proptest! {
 }
 
 #[test]
-fn home_pose_of_the_irb1600() {
+fn the_irb1600_has_the_known_home_pose() {
     let model = irb1600();
     let q = [0.0, 0.0, 0.0, 0.0, 30f64.to_radians(), 0.0];
     let pose = fk(&model, &q);
@@ -170,7 +164,7 @@ fn shoulder_singular() -> [f64; 6] {
 
 /// At poses with coinciding solutions, each solution gives the pose.
 #[test]
-fn singular_poses_have_finite_solutions() {
+fn solutions_of_singular_poses_give_the_pose() {
     let shoulder = shoulder_singular();
     for degrees in [
         [0.0; 6],
@@ -182,7 +176,7 @@ fn singular_poses_have_finite_solutions() {
         for model in robots() {
             let pose = fk(&model, &deg(degrees));
             for q in ik_all(&model, &pose).unwrap() {
-                assert!(distance(&fk(&model, &q), &pose) < 1e-7, "{}: {q:?}", model.name);
+                assert!(pose_distance(&fk(&model, &q), &pose) < 1e-7, "{}: {q:?}", model.name);
             }
         }
     }
@@ -191,7 +185,7 @@ fn singular_poses_have_finite_solutions() {
 /// Random arms of the whole catalogue in one, two or three singularities at once, and at the limit
 /// of their reach.
 #[test]
-fn no_singularity_of_any_robot_gives_a_number_that_is_none() {
+fn angles_in_singularities_are_finite_for_every_robot() {
     for name in joulepath::arm::robot::names() {
         let model = find(name).unwrap();
         if model.dof != 6 {
@@ -218,7 +212,10 @@ fn no_singularity_of_any_robot_gives_a_number_that_is_none() {
             let pose = fk(&model, &q);
             for found in ik_all(&model, &pose).unwrap_or_default() {
                 assert!(found.iter().all(|x| x.is_finite()), "{name} {q:?}: {found:?}");
-                assert!(distance(&fk(&model, &found), &pose) < 1e-6, "{name} {q:?}: {found:?}");
+                assert!(
+                    pose_distance(&fk(&model, &found), &pose) < 1e-6,
+                    "{name} {q:?}: {found:?}"
+                );
             }
             let near = ik_near(&model, &pose, &q);
             assert!(
@@ -243,7 +240,7 @@ fn no_singularity_of_any_robot_gives_a_number_that_is_none() {
 }
 
 #[test]
-fn wrist_singularity_keeps_joint_4() {
+fn a_wrist_singularity_keeps_joint_4() {
     let model = irb1600();
     let q = deg([10.0, 20.0, 30.0, 70.0, 0.0, 50.0]);
     let found = ik_near(&model, &fk(&model, &q), &q).unwrap();
@@ -252,7 +249,7 @@ fn wrist_singularity_keeps_joint_4() {
     let conf = Conf { cf1: 0, cf4: 1, cf6: 0, cfx: 0 };
     let found = ik_conf(&model, &fk(&model, &q), conf).unwrap();
     assert!((found[3].to_degrees() - 90.0).abs() < 1e-6, "{found:?}");
-    assert!(distance(&fk(&model, &found), &fk(&model, &q)) < 1e-8);
+    assert!(pose_distance(&fk(&model, &found), &fk(&model, &q)) < 1e-8);
 }
 
 #[test]
@@ -281,7 +278,7 @@ fn angles_at_an_edge_belong_to_both_quarter_turns() {
 }
 
 #[test]
-fn poses_without_a_solution_say_why() {
+fn poses_without_a_solution_have_a_reason() {
     let model = irb1600();
     let pose = |x: f64, y: f64, z: f64| {
         Isometry3::from_parts(
@@ -329,7 +326,7 @@ fn nearest_solution_follows_a_line_through_half_a_turn() {
             pose.rotation * turn,
         );
         let next = ik_near(&model, &goal, &q).unwrap();
-        assert!(distance(&fk(&model, &next), &goal) < SAME_POSE);
+        assert!(pose_distance(&fk(&model, &next), &goal) < SAME_POSE);
         assert!(next.iter().zip(&q).all(|(a, b)| (a - b).abs() < 0.05), "{next:?} {q:?}");
         q = next;
     }

@@ -2,22 +2,16 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
+mod command;
+
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 
-use serde_json::Value;
+use command::{joulepath, joulepath_in, parsed, refused, stderr, stdout};
 
 const ROBOT: [&str; 2] = ["--robot", "IRB1600-10/1.45"];
 const UNSAFE: [&str; 3] = ["--unsafe-fixes", "--select", "EW103"];
-
-fn joulepath(args: &[&str], folder: &Path) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_joulepath")).args(args).current_dir(folder).output().unwrap()
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).unwrap()
-}
 
 /// A folder with a program of `fixtures/lint`.
 fn folder(name: &str) -> tempfile::TempDir {
@@ -29,19 +23,19 @@ fn folder(name: &str) -> tempfile::TempDir {
 
 fn codes(args: &[&str], folder: &Path) -> Vec<String> {
     let args = [&["lint", ".", "--format", "json", "--quiet"], args].concat();
-    let output = joulepath(&args, folder);
-    assert!(output.status.code() < Some(2), "{}", text(&output.stderr));
-    let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let output = joulepath_in(folder, &args);
+    assert!(output.status.code() < Some(2), "{}", stderr(&output));
+    let value = parsed(&output);
     let findings = value["findings"].as_array().unwrap();
     findings.iter().map(|it| it["code"].as_str().unwrap().to_owned()).collect()
 }
 
 #[test]
-fn exit_codes_are_those_of_the_contract() {
+fn exit_codes_agree_with_the_contract() {
     let folder = folder("EW102_stop_in_line.mod");
     let code = |args: &[&str]| {
         let args = [&["lint", "."], args].concat();
-        joulepath(&args, folder.path()).status.code().unwrap()
+        joulepath_in(folder.path(), &args).status.code().unwrap()
     };
     assert_eq!(code(&ROBOT), 0);
     assert_eq!(code(&[&ROBOT[..], &["--max-waste", "100000J"]].concat()), 0);
@@ -52,11 +46,11 @@ fn exit_codes_are_those_of_the_contract() {
     assert_eq!(code(&[&ROBOT[..], &["--threshold", "nan"]].concat()), 2);
     assert_eq!(code(&["--max-waste", "1J"]), 2);
     assert_eq!(code(&["--select", "EW999"]), 2);
-    assert_eq!(joulepath(&["lint", "gone.mod"], folder.path()).status.code(), Some(2));
+    assert_eq!(joulepath_in(folder.path(), &["lint", "gone.mod"]).status.code(), Some(2));
 }
 
 #[test]
-fn rules_are_selected() {
+fn options_and_configuration_select_rules() {
     let folder = folder("EW101_unneeded_stop_point.mod");
     let only = codes(&["--select", "stops"], folder.path());
     assert!(!only.is_empty() && only.iter().all(|code| code.starts_with("EW1")), "{only:?}");
@@ -71,16 +65,16 @@ fn rules_are_selected() {
     assert!(codes(&ROBOT, folder.path()).is_empty());
     let wrong = format!("{config}[lint.thresholds-j]\nEW999 = 1.0\n");
     fs::write(folder.path().join("joulepath.toml"), wrong).unwrap();
-    let output = joulepath(&["lint", "."], folder.path());
+    let output = joulepath_in(folder.path(), &["lint", "."]);
     assert_eq!(output.status.code(), Some(2));
-    assert!(text(&output.stderr).contains("'EW999'"), "{}", text(&output.stderr));
+    assert!(stderr(&output).contains("'EW999'"), "{}", stderr(&output));
     let more = format!("{config}[lint.per-file-ignores]\n\"C*.mod\" = [\"stops\"]\n");
     fs::write(folder.path().join("joulepath.toml"), more).unwrap();
     assert!(codes(&ROBOT, folder.path()).is_empty());
 }
 
 #[test]
-fn a_baseline_takes_back_what_is_known() {
+fn a_baseline_hides_known_findings() {
     let folder = folder("EW101_unneeded_stop_point.mod");
     let before = codes(&["--write-baseline", "known.json"], folder.path());
     assert!(!before.is_empty());
@@ -97,7 +91,10 @@ fn a_baseline_takes_back_what_is_known() {
     assert!(codes(&["--baseline", "known.json"], folder.path()).is_empty());
     fs::write(&path, &new).unwrap();
     assert_eq!(codes(&["--baseline", "known.json"], folder.path()), ["EW101"]);
-    assert_eq!(joulepath(&["lint", ".", "--baseline", "x"], folder.path()).status.code(), Some(2));
+    assert_eq!(
+        joulepath_in(folder.path(), &["lint", ".", "--baseline", "x"]).status.code(),
+        Some(2)
+    );
 }
 
 #[test]
@@ -106,41 +103,41 @@ fn fixes_are_shown_and_written() {
     let path = folder.path().join("Cell.mod");
     let before = fs::read(&path).unwrap();
     let output =
-        joulepath(&[&["lint", ".", "--diff"], &UNSAFE[..], &ROBOT].concat(), folder.path());
-    let diff = text(&output.stdout);
+        joulepath_in(folder.path(), &[&["lint", ".", "--diff"], &UNSAFE[..], &ROBOT].concat());
+    let diff = stdout(&output);
     assert_eq!(diff.lines().filter(|line| line.starts_with("-  ")).count(), 1, "{diff}");
     assert!(diff.contains("+        MoveJ Offs(pAUp,-50,450,100),v1500,z50,tGripper"), "{diff}");
     assert_eq!(fs::read(&path).unwrap(), before);
     // `--fix` alone does not apply fixes that need a review.
-    joulepath(&[&["lint", ".", "--fix"], &ROBOT[..]].concat(), folder.path());
+    joulepath_in(folder.path(), &[&["lint", ".", "--fix"], &ROBOT[..]].concat());
     assert_eq!(fs::read(&path).unwrap(), before);
-    let output = joulepath(&[&["lint", "."], &UNSAFE[..], &ROBOT].concat(), folder.path());
-    assert!(text(&output.stderr).contains("1 fixes applied"), "{}", text(&output.stderr));
+    let output = joulepath_in(folder.path(), &[&["lint", "."], &UNSAFE[..], &ROBOT].concat());
+    assert!(stderr(&output).contains("1 fixes applied"), "{}", stderr(&output));
     let after = fs::read(&path).unwrap();
     assert_ne!(after, before);
-    joulepath(&[&["lint", "."], &UNSAFE[..], &ROBOT].concat(), folder.path());
+    joulepath_in(folder.path(), &[&["lint", "."], &UNSAFE[..], &ROBOT].concat());
     assert_eq!(fs::read(&path).unwrap(), after);
     // Without a robot no fix can be verified.
     fs::write(&path, &before).unwrap();
-    joulepath(&[&["lint", "."], &UNSAFE[..]].concat(), folder.path());
+    joulepath_in(folder.path(), &[&["lint", "."], &UNSAFE[..]].concat());
     assert_eq!(fs::read(&path).unwrap(), before);
 }
 
 #[cfg(unix)]
 #[test]
-fn protected_files_stay_and_links_stay_links() {
+fn read_only_files_are_kept_and_links_stay_links() {
     use std::os::unix::fs::{PermissionsExt, symlink};
     let folder = folder("EW103_tiny_zone.mod");
     let path = folder.path().join("Cell.mod");
     let before = fs::read(&path).unwrap();
     fs::set_permissions(&path, fs::Permissions::from_mode(0o444)).unwrap();
     let fix = |name: &str| {
-        let output = joulepath(&[&["lint", name], &UNSAFE[..], &ROBOT].concat(), folder.path());
-        (output.status.code(), text(&output.stderr))
+        let output = joulepath_in(folder.path(), &[&["lint", name], &UNSAFE[..], &ROBOT].concat());
+        (output.status.code(), stderr(&output))
     };
-    let (code, said) = fix("Cell.mod");
+    let (code, message) = fix("Cell.mod");
     assert_eq!(code, Some(2));
-    assert!(said.contains("Cell.mod' is read-only"), "{said}");
+    assert!(message.contains("Cell.mod' is read-only"), "{message}");
     assert_eq!(fs::read(&path).unwrap(), before);
     fs::set_permissions(&path, fs::Permissions::from_mode(0o644)).unwrap();
     let link = folder.path().join("Link.mod");
@@ -152,20 +149,20 @@ fn protected_files_stay_and_links_stay_links() {
 
 /// A program with an absurd number does not use up the budget of the others.
 #[test]
-fn endless_energy_is_not_added() {
+fn infinite_energies_are_left_out_of_the_total() {
     let folder = folder("EW101_unneeded_stop_point.mod");
     let endless = "MODULE M\nPROC main()\n  MoveAbsJ [[0,0,0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],\
                    v1000,fine,tool0;\n  WaitTime 1E308;\n  WaitTime 1E308;\nENDPROC\nENDMODULE\n";
     fs::write(folder.path().join("Endless.mod"), endless).unwrap();
     let args = [&["lint", ".", "--format", "json", "--max-waste", "0.001%"], &ROBOT[..]].concat();
-    let output = joulepath(&args, folder.path());
-    let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let output = joulepath_in(folder.path(), &args);
+    let value = parsed(&output);
     assert!(value["totals"]["cycle_energy_j"].as_f64().is_some_and(|energy| energy > 0.0));
     assert_eq!(output.status.code(), Some(1));
 }
 
 #[test]
-fn nobody_has_to_read_on() {
+fn a_closed_output_pipe_is_no_error() {
     let folder = tempfile::tempdir().unwrap();
     let text = "MODULE M\nPROC main()\n  MoveJ pGone,v100,fine,tool0;\nENDPROC\nENDMODULE\n";
     for index in 0..1_000 {
@@ -187,11 +184,11 @@ fn nobody_has_to_read_on() {
 
 /// Without a robot, unknown joules are not 0 J.
 #[test]
-fn statistics_tell_joules_where_there_are_some() {
+fn statistics_show_joules_only_with_a_robot() {
     let folder = folder("EW102_stop_in_line.mod");
     let last = |args: &[&str]| {
         let args = [&["lint", ".", "--statistics", "--select", "EW102"], args].concat();
-        let table = text(&joulepath(&args, folder.path()).stderr);
+        let table = stderr(&joulepath_in(folder.path(), &args));
         let row = table.lines().find(|line| line.trim_start().starts_with("EW102")).unwrap();
         row.split_whitespace().last().unwrap().to_owned()
     };
@@ -200,10 +197,10 @@ fn statistics_tell_joules_where_there_are_some() {
 }
 
 #[test]
-fn what_has_no_joules_is_told() {
+fn the_reason_for_missing_joules_is_reported() {
     let folder = folder("EW102_stop_in_line.mod");
-    let said = |args: &[&str]| text(&joulepath(args, folder.path()).stderr);
-    let lint = |more: &[&str]| said(&[&["lint", "Cell.mod"], more].concat());
+    let messages = |args: &[&str]| stderr(&joulepath_in(folder.path(), args));
+    let lint = |more: &[&str]| messages(&[&["lint", "Cell.mod"], more].concat());
     assert!(lint(&[]).contains("nothing has joules: no robot is named"));
     let bare = "extends = \"IRB120-3/0.58\"\nname = \"another\"\n";
     fs::write(folder.path().join("bare.toml"), bare).unwrap();
@@ -212,18 +209,18 @@ fn what_has_no_joules_is_told() {
     assert!(lint(&[&ROBOT[..], &["--entry", "nowhere"]].concat()).contains("--entry NAME"));
     assert_eq!(lint(&ROBOT), "");
     let locked = fs::canonicalize("fixtures/backup/RAPID/TASK2/PROGMOD/Locked.mod").unwrap();
-    assert!(said(&["lint", locked.to_str().unwrap()]).contains("is an encoded module"));
+    assert!(messages(&["lint", locked.to_str().unwrap()]).contains("is an encoded module"));
 }
 
 /// A backup with or without use of a signal for energy saving, and with or without a brake timeout.
 fn backup(io: &str, motion: &str) -> tempfile::TempDir {
     let program = "MODULE M\n    PROC main()\n        WaitTime 60;\n        WaitTime 5;\n    \
                    ENDPROC\nENDMODULE\n";
-    backup_of(program, io, motion)
+    backup_with_program(program, io, motion)
 }
 
 /// A backup of a program.
-fn backup_of(program: &str, io: &str, motion: &str) -> tempfile::TempDir {
+fn backup_with_program(program: &str, io: &str, motion: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let modules = folder.path().join("RAPID/TASK1/PROGMOD");
     fs::create_dir_all(&modules).unwrap();
@@ -235,7 +232,7 @@ fn backup_of(program: &str, io: &str, motion: &str) -> tempfile::TempDir {
 }
 
 #[test]
-fn backups_are_asked_for_settings_that_save() {
+fn backups_without_energy_saving_settings_have_findings() {
     let signal = "EIO:CFG_1.0:6:1::\n#\nEIO_SIGNAL:\n\n      -Name \"diSyEnEnSav\" -SignalType \
                   \"DI\" -Label \"System Enable Energy Saving\"\n";
     let unused = backup(signal, "MOC:CFG_1.0:6:0::\n");
@@ -255,9 +252,9 @@ fn backups_are_asked_for_settings_that_save() {
     assert!(codes(&["--select", "system"], used.path()).is_empty());
 }
 
-/// Three plants and three near misses of each rule that needs a backup.
+/// Three planted faults and three near misses of each rule that needs a backup.
 #[test]
-fn backups_are_planted() {
+fn backup_rules_find_planted_faults_and_no_near_misses() {
     let motion = "MOC:CFG_1.0:6:0::\n";
     let timeout = "MOC:CFG_1.0:6:0::\n#\nMOTION_PLANNER:\n\n      -brake_on_timeout 10\n";
     let io = "EIO:CFG_1.0:6:1::\n";
@@ -271,7 +268,7 @@ fn backups_are_planted() {
         ("WaitDI diDone,1;", motion, false),
     ];
     for (body, motion, fires) in brakes {
-        let folder = backup_of(&program(body), io, motion);
+        let folder = backup_with_program(&program(body), io, motion);
         let found = codes(&["--select", "EW801"], folder.path());
         assert_eq!(found.contains(&"EW801".to_owned()), fires, "{body} {motion}");
     }
@@ -293,33 +290,27 @@ fn backups_are_planted() {
         (signal("diDoor", "Door closed"), "WaitTime 1;", false),
     ];
     for (io, body, fires) in signals {
-        let folder = backup_of(&program(body), &io, motion);
+        let folder = backup_with_program(&program(body), &io, motion);
         let found = codes(&["--select", "EW802"], folder.path());
         assert_eq!(found.contains(&"EW802".to_owned()), fires, "{body} {io}");
     }
 }
 
 #[test]
-fn manuals_are_shown() {
-    let here = Path::new(".");
-    let output = text(&joulepath(&["rule", "EW101"], here).stdout);
+fn rule_shows_the_manual() {
+    let output = stdout(&joulepath(&["rule", "EW101"]));
     assert!(output.starts_with("# EW101 unneeded-stop-point"), "{output}");
     assert!(output.contains("## Why it wastes energy"));
-    let list = text(&joulepath(&["rule"], here).stdout);
+    let list = stdout(&joulepath(&["rule"]));
     assert!(list.lines().count() > 30 && list.contains("EW802"), "{list}");
-    let wrong = joulepath(&["rule", "EW1011"], here);
-    assert_eq!(wrong.status.code(), Some(2));
-    assert!(text(&wrong.stderr).contains("did you mean EW101"), "{}", text(&wrong.stderr));
+    refused(&["rule", "EW1011"], "did you mean EW101");
 }
 
 /// A folder of unrelated programs with an entry each is linted file by file.
 #[test]
-fn unrelated_programs_stand_alone() {
-    let output = joulepath(
-        &[&["lint", "fixtures/lint", "--format", "json", "--quiet"], &ROBOT[..]].concat(),
-        Path::new("."),
-    );
-    let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+fn unrelated_programs_are_linted_separately() {
+    let args = [&["lint", "fixtures/lint", "--format", "json", "--quiet"], &ROBOT[..]].concat();
+    let value = parsed(&joulepath(&args));
     let findings = value["findings"].as_array().unwrap();
     let has = |code: &str| findings.iter().any(|finding| finding["code"] == code);
     assert!(has("EW101") && has("EW405") && has("EW703"));
@@ -332,15 +323,15 @@ fn broken_programs_are_linted_too() {
     {
         for robot in [&ROBOT[..], &[]] {
             let args = [&["lint", folder, "--format", "concise", "--quiet"], robot].concat();
-            let output = joulepath(&args, Path::new("."));
-            assert_eq!(output.status.code(), Some(0), "{folder}: {}", text(&output.stderr));
+            let output = joulepath(&args);
+            assert_eq!(output.status.code(), Some(0), "{folder}: {}", stderr(&output));
         }
     }
 }
 
 /// The pre-commit hook receives the changed files and also reads the rest of their program.
 #[test]
-fn the_hook_looks_at_whole_programs() {
+fn the_pre_commit_hook_reads_whole_programs() {
     let hook = fs::read_to_string(".pre-commit-hooks.yaml").unwrap();
     let field = |name: &str| hook.lines().find_map(|line| line.trim().strip_prefix(name)).unwrap();
     assert_eq!(field("pass_filenames:").trim(), "false");
@@ -353,10 +344,10 @@ fn the_hook_looks_at_whole_programs() {
     fs::write(folder.path().join("Data.mod"), data).unwrap();
     fs::write(folder.path().join("Cell.mod"), main).unwrap();
     let args: Vec<&str> = entry.split_whitespace().chain([paths]).collect();
-    let output = joulepath(&args, folder.path());
-    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
-    assert_eq!(text(&output.stdout), "");
+    let output = joulepath_in(folder.path(), &args);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(stdout(&output), "");
     // A single file alone would have a finding.
-    let alone = joulepath(&["lint", "Cell.mod", "--format", "concise"], folder.path());
-    assert!(text(&alone.stdout).contains("EW704"), "{}", text(&alone.stdout));
+    let alone = joulepath_in(folder.path(), &["lint", "Cell.mod", "--format", "concise"]);
+    assert!(stdout(&alone).contains("EW704"), "{}", stdout(&alone));
 }

@@ -49,7 +49,7 @@ fn a_polynomial_is_differentiated_exactly() {
 }
 
 #[test]
-fn noise_is_smoothed_and_nothing_is_late() {
+fn differentiation_smooths_noise_without_a_delay() {
     let t: Vec<f64> = (0..1500).map(|i| 0.004 * f64::from(i)).collect();
     let clean: Vec<f64> = t.iter().map(|t| swing(*t)[0]).collect();
     let [rate, acceleration] = errors(&t, &clean);
@@ -62,7 +62,7 @@ fn noise_is_smoothed_and_nothing_is_late() {
 }
 
 #[test]
-fn rest_is_rest_and_gaps_are_not_bridged() {
+fn rest_has_no_rate_and_gaps_are_not_bridged() {
     let t: Vec<f64> = (0..300).map(|i| 0.01 * f64::from(i)).collect();
     let still: Vec<f64> = (0..300).map(|i| 0.3 + 1e-4 * noise(i)).collect();
     let moving = derivatives(&t, &still).iter().filter(|at| at.unwrap()[0] != 0.0).count();
@@ -87,7 +87,7 @@ fn csv(header: &str, separator: &str) -> String {
 }
 
 #[test]
-fn columns_have_other_names() {
+fn columns_can_be_renamed() {
     let map = ColumnMap::parse("t=Time [s], q1_deg=Axis 1,tau1=q1").unwrap();
     let log = read(csv("Time [s];Axis 1;q1", ";").as_bytes(), &map).unwrap();
     assert_eq!(log.channels, [Channel::Time, Channel::Position(0), Channel::Torque(0)]);
@@ -101,15 +101,15 @@ fn columns_have_other_names() {
 }
 
 #[test]
-fn wrong_maps_say_why() {
-    let of = |map: &str| -> LogError {
+fn wrong_maps_are_refused_with_the_reason() {
+    let refusal = |map: &str| -> LogError {
         match ColumnMap::parse(map) {
             Ok(map) => read(csv("Time,Axis,x", ",").as_bytes(), &map).unwrap_err(),
             Err(error) => error,
         }
     };
-    let messages =
-        ["q1", "q1=", "p1=Axis", "t=Time,t=x", "t=Tme", "q1=Axis"].map(|map| of(map).to_string());
+    let messages = ["q1", "q1=", "p1=Axis", "t=Time,t=x", "t=Tme", "q1=Axis"]
+        .map(|map| refusal(map).to_string());
     assert_snapshot!(messages.join("\n"));
 }
 

@@ -28,11 +28,13 @@ impl Client {
         let input = process.stdin.take().unwrap();
         let output = BufReader::new(process.stdout.take().unwrap());
         let mut client = Client { process, input, output, next: 1 };
-        let about = client
-            .ask("initialize", &json!({ "capabilities": {}, "initializationOptions": options }));
+        let about = client.request(
+            "initialize",
+            &json!({ "capabilities": {}, "initializationOptions": options }),
+        );
         assert_eq!(about["capabilities"]["hoverProvider"], true);
         assert_eq!(about["capabilities"]["textDocumentSync"]["change"], 2);
-        client.tell("initialized", &json!({}));
+        client.notify("initialized", &json!({}));
         client
     }
 
@@ -59,18 +61,18 @@ impl Client {
         serde_json::from_slice(&bytes).unwrap()
     }
 
-    fn tell(&mut self, method: &str, params: &Value) {
+    fn notify(&mut self, method: &str, params: &Value) {
         self.send(&json!({ "jsonrpc": "2.0", "method": method, "params": params }));
     }
 
-    fn ask(&mut self, method: &str, params: &Value) -> Value {
+    fn request(&mut self, method: &str, params: &Value) -> Value {
         let answer = self.answer(method, params);
         assert!(answer.get("error").is_none(), "{answer}");
         answer["result"].clone()
     }
 
     /// The error in the answer to a request.
-    fn ask_wrongly(&mut self, method: &str, params: &Value) -> Value {
+    fn request_error(&mut self, method: &str, params: &Value) -> Value {
         self.answer(method, params)["error"].clone()
     }
 
@@ -86,13 +88,13 @@ impl Client {
         }
     }
 
-    /// The next diagnostics.
-    fn told(&mut self) -> Vec<Value> {
-        self.told_of().1
+    /// The findings in the next diagnostics.
+    fn next_findings(&mut self) -> Vec<Value> {
+        self.next_diagnostics().1
     }
 
     /// The document of the next diagnostics, and these.
-    fn told_of(&mut self) -> (String, Vec<Value>) {
+    fn next_diagnostics(&mut self) -> (String, Vec<Value>) {
         let message = self.read();
         assert_eq!(message["method"], "textDocument/publishDiagnostics", "{message}");
         let params = &message["params"];
@@ -102,21 +104,34 @@ impl Client {
 
     fn open(&mut self, path: &Path) -> String {
         let uri = format!("file://{}", path.display());
-        let text = fs::read_to_string(path).unwrap();
-        let document = json!({ "uri": uri, "languageId": "rapid", "version": 1, "text": text });
-        self.tell("textDocument/didOpen", &json!({ "textDocument": document }));
+        self.open_text(&uri, &fs::read_to_string(path).unwrap());
         uri
     }
 
+    fn open_text(&mut self, uri: &str, text: &str) {
+        let document = json!({ "uri": uri, "languageId": "rapid", "version": 1, "text": text });
+        self.notify("textDocument/didOpen", &json!({ "textDocument": document }));
+    }
+
+    fn change(&mut self, uri: &str, change: &Value) {
+        let document = json!({ "uri": uri, "version": 2 });
+        let changes = json!({ "textDocument": document, "contentChanges": [change] });
+        self.notify("textDocument/didChange", &changes);
+    }
+
     fn stop(mut self) {
-        self.ask("shutdown", &Value::Null);
-        self.tell("exit", &Value::Null);
+        self.request("shutdown", &Value::Null);
+        self.notify("exit", &Value::Null);
         assert!(self.process.wait().unwrap().success());
     }
 }
 
+fn codes(findings: &[Value]) -> Vec<&str> {
+    findings.iter().map(|finding| finding["code"].as_str().unwrap()).collect()
+}
+
 #[test]
-fn an_editor_is_served() {
+fn an_open_document_gets_findings_hovers_and_fixes() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("Cell 1.mod");
     let text = fs::read_to_string("fixtures/lint/EW103_tiny_zone.mod").unwrap();
@@ -126,22 +141,19 @@ fn an_editor_is_served() {
     let mut client = Client::start(&json!({ "robot": "IRB1600-10/1.45" }));
 
     // The text of the editor has priority over the file.
-    let opened = json!({
-        "textDocument": { "uri": uri, "languageId": "rapid", "version": 1, "text": text }
-    });
-    client.tell("textDocument/didOpen", &opened);
-    let found = client.told();
+    client.open_text(&uri, &text);
+    let found = client.next_findings();
     let tiny = found.iter().find(|it| it["code"] == "EW103").unwrap().clone();
     assert!(tiny["data"]["saving_j"].as_f64().unwrap() > 1.0, "{tiny}");
     assert!(tiny["message"].as_str().unwrap().contains(" J "), "{tiny}");
 
     let place = tiny["range"]["start"].clone();
-    let hover =
-        client.ask("textDocument/hover", &json!({ "textDocument": document, "position": place }));
+    let hover = client
+        .request("textDocument/hover", &json!({ "textDocument": document, "position": place }));
     let value = hover["contents"]["value"].as_str().unwrap();
     assert!(value.contains("**MoveJ**") && value.contains(" J, "), "{value}");
 
-    let actions = client.ask(
+    let actions = client.request(
         "textDocument/codeAction",
         &json!({ "textDocument": document, "range": tiny["range"], "context": { "diagnostics": [] } }),
     );
@@ -151,14 +163,10 @@ fn an_editor_is_served() {
     assert_eq!(edit["newText"], "z50");
 
     // The fix as an incremental change removes all findings of that kind.
-    let change = json!({
-        "textDocument": { "uri": uri, "version": 2 },
-        "contentChanges": [{ "range": edit["range"], "text": edit["newText"] }]
-    });
-    client.tell("textDocument/didChange", &change);
-    assert!(client.told().iter().all(|it| it["code"] != "EW103"));
-    client.tell("textDocument/didClose", &json!({ "textDocument": document }));
-    assert!(client.told().is_empty());
+    client.change(&uri, &json!({ "range": edit["range"], "text": edit["newText"] }));
+    assert!(client.next_findings().iter().all(|it| it["code"] != "EW103"));
+    client.notify("textDocument/didClose", &json!({ "textDocument": document }));
+    assert!(client.next_findings().is_empty());
     assert_eq!(fs::read_to_string(&path).unwrap(), "MODULE Old\nENDMODULE\n");
     client.stop();
 }
@@ -170,11 +178,8 @@ fn a_document_is_linted_without_a_robot_and_a_folder() {
     let mut client = Client::start(&json!({ "robot": "no such robot" }));
     let uri = "file:///gone/M.mod";
     let text = "MODULE M\nPROC main()\n! joulepath: ignore EW999 no such rule\nWaitTime 1;\nMoveL";
-    let opened = json!({
-        "textDocument": { "uri": uri, "languageId": "rapid", "version": 1, "text": text }
-    });
-    client.tell("textDocument/didOpen", &opened);
-    let (name, found) = client.told_of();
+    client.open_text(uri, text);
+    let (name, found) = client.next_diagnostics();
     assert_eq!(name, "M.mod");
     let [comment] = found.as_slice() else { panic!("{found:?}") };
     assert_eq!((&comment["code"], &comment["severity"]), (&json!("EW001"), &json!(2)));
@@ -183,17 +188,17 @@ fn a_document_is_linted_without_a_robot_and_a_folder() {
 
     let identifier = json!({ "uri": uri });
     let asked = json!({ "textDocument": identifier, "position": { "line": 3, "character": 2 } });
-    assert_eq!(client.ask("textDocument/hover", &asked), Value::Null);
+    assert_eq!(client.request("textDocument/hover", &asked), Value::Null);
     let asked = json!({
         "textDocument": identifier, "range": comment["range"], "context": { "diagnostics": found }
     });
-    let actions = client.ask("textDocument/codeAction", &asked);
+    let actions = client.request("textDocument/codeAction", &asked);
     assert_eq!(actions[0]["isPreferred"], true, "{actions}");
     assert_eq!(actions[0]["edit"]["changes"][uri][0]["newText"], "", "{actions}");
 
-    let error = client.ask_wrongly("textDocument/hover", &json!({ "textDocument": identifier }));
+    let error = client.request_error("textDocument/hover", &json!({ "textDocument": identifier }));
     assert_eq!(error["code"], -32602, "{error}");
-    let error = client.ask_wrongly("textDocument/rename", &json!({}));
+    let error = client.request_error("textDocument/rename", &json!({}));
     assert_eq!(error["code"], -32601, "{error}");
     client.stop();
 }
@@ -201,7 +206,7 @@ fn a_document_is_linted_without_a_robot_and_a_folder() {
 /// After a change, diagnostics are updated for the open documents of the same program, and for no
 /// other document of the folder.
 #[test]
-fn changes_are_told_where_they_matter() {
+fn a_change_updates_the_open_documents_of_its_program() {
     let folder = tempfile::tempdir().unwrap();
     let work = "MODULE Work\nPROC rWork()\nMoveJ pOver,v1000,fine,tool0;\nENDPROC\n\
                 PROC rStay()\nMoveJ pOver,v1000,fine,tool0;\nENDPROC\nENDMODULE\n";
@@ -218,35 +223,28 @@ fn changes_are_told_where_they_matter() {
     for (path, text) in &paths {
         fs::write(path, text).unwrap();
     }
-    let codes = |found: &[Value]| -> Vec<String> {
-        found.iter().map(|it| it["code"].as_str().unwrap().to_owned()).collect()
-    };
     let mut client = Client::start(&json!({}));
     client.open(&paths[0].0);
-    assert_eq!(client.told_of().0, "Work.mod");
+    assert_eq!(client.next_diagnostics().0, "Work.mod");
     client.open(&paths[2].0);
-    assert_eq!(client.told_of().0, "Other.mod");
+    assert_eq!(client.next_diagnostics().0, "Other.mod");
     let cell = client.open(&paths[1].0);
-    let mut names = [client.told_of().0, client.told_of().0];
+    let mut names = [client.next_diagnostics().0, client.next_diagnostics().0];
     names.sort();
     assert_eq!(names, ["Cell.mod", "Work.mod"]);
     // Without its call the procedure is dead, which is reported in the other document.
-    let change = json!({
-        "textDocument": { "uri": cell, "version": 2 },
-        "contentChanges": [{ "text": paths[1].1.replace("rWork;\n", "") }],
-    });
-    client.tell("textDocument/didChange", &change);
-    let told: std::collections::BTreeMap<String, Vec<Value>> =
-        [client.told_of(), client.told_of()].into_iter().collect();
-    assert_eq!(codes(&told["Work.mod"]), ["EW702"]);
-    assert!(told["Cell.mod"].is_empty());
+    client.change(&cell, &json!({ "text": paths[1].1.replace("rWork;\n", "") }));
+    let reported: std::collections::BTreeMap<String, Vec<Value>> =
+        [client.next_diagnostics(), client.next_diagnostics()].into_iter().collect();
+    assert_eq!(codes(&reported["Work.mod"]), ["EW702"]);
+    assert!(reported["Cell.mod"].is_empty());
     client.stop();
 }
 
 /// The text of the editor replaces the file until the document is closed; then the diagnostics,
 /// hovers and fixes of the program's other open documents are updated.
 #[test]
-fn closing_a_document_is_told_to_the_others() {
+fn closing_a_document_updates_the_other_documents() {
     let folder = tempfile::tempdir().unwrap();
     let data = fs::read_to_string("fixtures/lint/plants/Shared.mod").unwrap();
     let work = "MODULE Work\nPROC rWork()\n    MoveJ pAUp,v1000,fine,tGripper;\n    \
@@ -259,36 +257,30 @@ fn closing_a_document_is_told_to_the_others() {
     for (path, text) in paths.iter().zip([data.as_str(), work, cell]) {
         fs::write(path, text).unwrap();
     }
-    let codes = |found: &[Value]| -> Vec<String> {
-        found.iter().map(|it| it["code"].as_str().unwrap().to_owned()).collect()
-    };
     let mut client = Client::start(&json!({ "robot": "IRB1600-10/1.45" }));
     let work = client.open(&paths[1]);
-    assert_eq!(codes(&client.told_of().1), ["EW101"]);
+    assert_eq!(codes(&client.next_diagnostics().1), ["EW101"]);
     let cell = client.open(&paths[2]);
-    client.told_of();
-    client.told_of();
-    let change = json!({
-        "textDocument": { "uri": cell, "version": 2 },
-        "contentChanges": [{ "text": "MODULE Cell\nPROC main()\nrStay;\nENDPROC\nENDMODULE\n" }],
-    });
-    client.tell("textDocument/didChange", &change);
-    let told = [client.told_of(), client.told_of()];
-    let of_work = told.iter().find(|(name, _)| name == "Work.mod").unwrap();
-    assert!(codes(&of_work.1).contains(&"EW702".to_owned()), "{told:?}");
-    client.tell("textDocument/didClose", &json!({ "textDocument": { "uri": cell } }));
-    assert_eq!(client.told_of(), ("Cell.mod".to_owned(), Vec::new()));
-    let (name, found) = client.told_of();
-    assert_eq!((name.as_str(), codes(&found)), ("Work.mod", vec!["EW101".to_owned()]));
+    client.next_diagnostics();
+    client.next_diagnostics();
+    let text = "MODULE Cell\nPROC main()\nrStay;\nENDPROC\nENDMODULE\n";
+    client.change(&cell, &json!({ "text": text }));
+    let reported = [client.next_diagnostics(), client.next_diagnostics()];
+    let work_findings = reported.iter().find(|(name, _)| name == "Work.mod").unwrap();
+    assert!(codes(&work_findings.1).contains(&"EW702"), "{reported:?}");
+    client.notify("textDocument/didClose", &json!({ "textDocument": { "uri": cell } }));
+    assert_eq!(client.next_diagnostics(), ("Cell.mod".to_owned(), Vec::new()));
+    let (name, found) = client.next_diagnostics();
+    assert_eq!((name.as_str(), codes(&found)), ("Work.mod", vec!["EW101"]));
 
     let document = json!({ "uri": work });
     let place = json!({ "line": 3, "character": 6 });
     let asked = json!({ "textDocument": document, "position": place });
-    let hover = client.ask("textDocument/hover", &asked);
+    let hover = client.request("textDocument/hover", &asked);
     assert!(hover["contents"]["value"].as_str().unwrap().starts_with("**MoveL**"), "{hover}");
     assert_eq!(hover["range"]["start"], json!({ "line": 3, "character": 4 }));
     let asked = json!({ "textDocument": document, "range": found[0]["range"], "context": { "diagnostics": [] } });
-    let actions = client.ask("textDocument/codeAction", &asked);
+    let actions = client.request("textDocument/codeAction", &asked);
     let edit = &actions[0]["edit"]["changes"][&work][0];
     assert_eq!(actions[0]["isPreferred"], false, "{actions}");
     assert!(edit["newText"].as_str().unwrap().starts_with('z'), "{actions}");

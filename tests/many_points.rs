@@ -2,18 +2,19 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
+mod support;
+
 use joulepath::arm::kinematics::fk;
-use joulepath::arm::robot::find;
 use joulepath::rapid::syntax;
 use joulepath::rapid::text::{self, FileId, SourceFile, Span};
+use joulepath::retime::motion::Options;
 use joulepath::retime::motion::stream::Stream;
 use joulepath::retime::motion::timed::TimedMotion;
 use joulepath::retime::motion::timeline::What;
-use joulepath::retime::motion::{Options, simulate};
 use joulepath::tool::emit::{
     Emission, EmittedStream, Layout, MotionSettings, Names, Recorded, Robot, Site, emit,
 };
-use joulepath::tool::retrofit::{Source, read_program};
+use support::{irb1600, simulated, sources};
 
 /// Points of each stream: two streams do not fit into one module.
 const POINTS: usize = 900;
@@ -85,7 +86,7 @@ fn emitted(layout: Layout) -> Vec<SourceFile> {
         })
         .collect();
     let names = Names::free(std::slice::from_ref(&file));
-    let model = find("IRB1600-10/1.45").unwrap();
+    let model = irb1600();
     let posture = [0.1; 6];
     let place = fk(&model, &posture).translation.vector.into();
     let emission = Emission {
@@ -108,8 +109,8 @@ fn emitted(layout: Layout) -> Vec<SourceFile> {
 }
 
 #[test]
-fn each_module_holds_what_it_can_and_all_run_as_one_program() {
-    let model = find("IRB1600-10/1.45").unwrap();
+fn long_streams_are_split_into_modules_of_one_program() {
+    let model = irb1600();
     for layout in [Layout::Plain, Layout::Array, Layout::Auto] {
         let files = emitted(layout);
         let paths: Vec<&str> = files.iter().map(|file| file.path.as_str()).collect();
@@ -126,10 +127,7 @@ fn each_module_holds_what_it_can_and_all_run_as_one_program() {
             let functions = text.contains("FUNC bool jpAt(");
             assert_eq!(functions, file.path == "Joulepath.mod");
         }
-        let sources: Vec<Source> =
-            files.into_iter().map(|file| Source { relative: file.path.clone(), file }).collect();
-        let (program, entry) = read_program(&sources, "main").unwrap();
-        let simulation = simulate(&program, entry, &model, &Options::default());
+        let simulation = simulated(&model, &sources(files), &Options::default());
         assert!(simulation.unresolved.is_empty(), "{:?}", simulation.unresolved);
         let streams: Vec<&Stream> = simulation
             .events

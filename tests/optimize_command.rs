@@ -1,36 +1,19 @@
 //! `optimize` through the binary: contract of its JSON, output files, messages.
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
-use std::collections::BTreeMap;
+mod command;
+
 use std::fmt::Write;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
 
+use command::{KNOWN_LIMITS, files, joulepath, json, module, number, refused, run, stderr, stdout};
 use serde_json::Value;
 
 /// Tolerance of end points, rad.
 const ENDPOINT_TOLERANCE: f64 = 1e-4;
 /// Least share of the eligible moving time that is rewritten.
 const REWRITTEN_SHARE: f64 = 0.8;
-
-fn joulepath(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_joulepath")).args(args).output().unwrap()
-}
-
-fn json(args: &[&str]) -> Value {
-    let output = joulepath(args);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
-
-fn number(value: &Value, path: &str) -> f64 {
-    value.pointer(path).and_then(Value::as_f64).unwrap_or_else(|| panic!("no number at {path}"))
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
 
 /// Settings that remove platform-dependent last digits from snapshots.
 fn snapshots() -> insta::Settings {
@@ -43,7 +26,7 @@ fn snapshots() -> insta::Settings {
 }
 
 #[test]
-fn pick_place_keeps_the_contract() {
+fn the_result_of_pick_place_agrees_with_the_contract() {
     let result = json(&["optimize", "fixtures/pick_place", "--format", "json"]);
     assert_eq!(result["verification"]["passed"], true);
     for limit in ["velocity", "acceleration", "torque", "tcp_speed"] {
@@ -84,7 +67,7 @@ fn pick_place_keeps_the_contract() {
 }
 
 #[test]
-fn what_was_written_simulates_as_promised() {
+fn the_written_program_simulates_as_predicted() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
     let out = out.to_str().unwrap();
@@ -116,7 +99,7 @@ fn output_is_the_same_bytes_each_time() {
 }
 
 #[test]
-fn paper_order_holds() {
+fn times_and_energies_are_ordered_as_in_the_paper() {
     let energy = json(&["optimize", "fixtures/paper", "--format", "json"]);
     let time = json(&["optimize", "fixtures/paper", "--format", "json", "--objective", "time"]);
     let segment = |result: &Value, line: u64, key: &str| -> f64 {
@@ -144,57 +127,34 @@ fn paper_order_holds() {
     assert!(segment(&energy, slow, "time_before_s") > segment(&energy, half, "time_before_s"));
 }
 
-/// All files of a folder with their bytes.
-fn tree(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let mut found = BTreeMap::new();
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            found.insert(path.clone(), Vec::new());
-            found.extend(tree(&path));
-        } else {
-            found.insert(path.clone(), fs::read(&path).unwrap());
-        }
-    }
-    found
-}
-
 #[test]
-fn in_place_is_taken_back_to_the_byte() {
+fn undo_restores_every_byte() {
     let folder = tempfile::tempdir().unwrap();
     let cell = folder.path().join("cell");
     fs::create_dir(&cell).unwrap();
     let program = cell.join("waits.mod");
     fs::copy("fixtures/hard/waits.mod", &program).unwrap();
-    let before = tree(folder.path());
+    let before = files(folder.path());
     let path = program.to_str().unwrap();
     let args = ["optimize", path, "--robot", "IRB1600-10/1.45", "--in-place", "--quiet"];
-    let undo = |path: &Path| joulepath(&["optimize", path.to_str().unwrap(), "--undo"]);
-    let refused = |output: &Output, part: &str| {
-        let said = text(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{said}");
-        assert!(said.contains(part), "{said}");
-    };
-    refused(&undo(&program), "nothing to undo");
+    refused(&["optimize", path, "--undo"], "nothing to undo");
     for named in [&program, &cell] {
-        assert!(joulepath(&args).status.success());
-        assert_ne!(fs::read(&program).unwrap(), before[&program]);
+        run(&args);
+        assert_ne!(fs::read(&program).unwrap(), before["cell/waits.mod"]);
         assert!(cell.join("Joulepath.mod").is_file());
         // The originals are outside the loaded folder.
         let kept = folder.path().join("cell.joulepath-undo");
-        assert_eq!(fs::read(kept.join("files/waits.mod")).unwrap(), before[&program]);
-        let names = fs::read_dir(&cell).unwrap().map(|entry| entry.unwrap().file_name());
-        let mut names: Vec<String> = names.map(|name| name.into_string().unwrap()).collect();
-        names.sort();
+        assert_eq!(fs::read(kept.join("files/waits.mod")).unwrap(), before["cell/waits.mod"]);
+        let names: Vec<String> = files(&cell).into_keys().collect();
         assert_eq!(names, ["Joulepath.mod", "joulepath_brakes.txt", "waits.mod"]);
-        assert!(undo(named).status.success());
-        assert_eq!(tree(folder.path()), before);
+        run(&["optimize", named.to_str().unwrap(), "--undo"]);
+        assert_eq!(files(folder.path()), before);
     }
-    refused(&undo(&cell), "nothing to undo");
+    refused(&["optimize", cell.to_str().unwrap(), "--undo"], "nothing to undo");
 }
 
 #[test]
-fn what_was_changed_since_is_not_taken_back() {
+fn undo_is_refused_after_an_edit() {
     let folder = tempfile::tempdir().unwrap();
     let cell = folder.path().join("cell");
     fs::create_dir(&cell).unwrap();
@@ -203,45 +163,40 @@ fn what_was_changed_since_is_not_taken_back() {
     let original = fs::read(&program).unwrap();
     let path = cell.to_str().unwrap();
     let args = ["optimize", path, "--robot", "IRB1600-10/1.45", "--in-place", "--quiet"];
-    assert!(joulepath(&args).status.success());
+    run(&args);
     let written = fs::read(&program).unwrap();
     // A second run would overwrite the originals.
     fs::write(&program, &original).unwrap();
-    let again = joulepath(&args);
-    assert_eq!(again.status.code(), Some(2));
-    assert!(text(&again.stderr).contains("--undo"), "{}", text(&again.stderr));
+    refused(&args, "--undo");
     // An edited file remains, and so do all others.
     for changed in ["waits.mod", "Joulepath.mod"] {
         fs::write(&program, &written).unwrap();
         fs::write(cell.join(changed), "MODULE M\nENDMODULE\n").unwrap();
-        let now = tree(folder.path());
-        let output = joulepath(&["optimize", path, "--undo"]);
-        let said = text(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{said}");
-        assert!(said.contains(&format!("{changed}' was changed since")), "{said}");
-        assert_eq!(tree(folder.path()), now);
+        let now = files(folder.path());
+        refused(&["optimize", path, "--undo"], &format!("{changed}' was changed since"));
+        assert_eq!(files(folder.path()), now);
     }
     // Already restored or removed files are no obstacle.
     fs::remove_file(cell.join("Joulepath.mod")).unwrap();
     fs::write(&program, &original).unwrap();
-    assert!(joulepath(&["optimize", path, "--undo"]).status.success());
+    run(&["optimize", path, "--undo"]);
     assert_eq!(fs::read(&program).unwrap(), original);
     assert!(!folder.path().join("cell.joulepath-undo").exists());
 }
 
 #[test]
-fn folders_that_were_made_are_removed_again() {
+fn undo_removes_created_folders() {
     let folder = tempfile::tempdir().unwrap();
     let cell = folder.path().join("cell");
     fs::create_dir(&cell).unwrap();
     fs::write(cell.join("m.mod"), program("", "")).unwrap();
-    let before = tree(folder.path());
+    let before = files(folder.path());
     let path = cell.to_str().unwrap();
     let (said, code) = said(folder.path(), &["optimize", path, "--emit", "egm", "--in-place"]);
     assert_eq!(code, Some(0), "{said}");
     assert!(cell.join("egm").is_dir());
-    assert!(joulepath(&["optimize", path, "--undo"]).status.success());
-    assert_eq!(tree(folder.path()), before);
+    run(&["optimize", path, "--undo"]);
+    assert_eq!(files(folder.path()), before);
 }
 
 #[test]
@@ -291,7 +246,7 @@ fn unusable_input_names_the_way_out() {
         let output = joulepath(&args);
         assert_eq!(output.status.code(), Some(2), "{args:?}");
         assert!(output.stdout.is_empty(), "{args:?}");
-        let message = text(&output.stderr).replace(folder.path().to_str().unwrap(), "[folder]");
+        let message = stderr(&output).replace(folder.path().to_str().unwrap(), "[folder]");
         let messages = message.lines().filter(|line| !line.starts_with("note:"));
         for line in messages {
             said.push_str(line);
@@ -318,38 +273,32 @@ fn program(declarations: &str, statements: &str) -> String {
     )
 }
 
-/// The robot with known limits.
-const KNOWN: [&str; 2] =
-    ["--robot", concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/known_limits.toml")];
+const KNOWN: [&str; 2] = ["--robot", KNOWN_LIMITS];
 const ROBOT: [&str; 2] = ["--robot", "IRB1600-10/1.45"];
 
 /// Standard error of a command without its assumptions, and the exit code.
 fn said(folder: &Path, args: &[&str]) -> (String, Option<i32>) {
     let output = joulepath(&[args, &ROBOT].concat());
-    let message = text(&output.stderr).replace(folder.to_str().unwrap(), "[folder]");
+    let message = stderr(&output).replace(folder.to_str().unwrap(), "[folder]");
     let lines = message.lines().filter(|line| !line.starts_with("note: assumed"));
     (lines.flat_map(|line| [line, "\n"]).collect(), output.status.code())
 }
 
 /// Standard error for a program of one file.
 fn said_of(declarations: &str, statements: &str, args: &[&str]) -> (String, Option<i32>) {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("m.mod");
-    fs::write(&path, program(declarations, statements)).unwrap();
-    said(folder.path(), &[&["optimize", path.to_str().unwrap()], args].concat())
+    let (folder, path) = module(program(declarations, statements));
+    said(folder.path(), &[&["optimize", &path], args].concat())
 }
 
 /// The JSON of a retrofit of a program.
 fn optimized(statements: &str, options: &[&str]) -> Value {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("m.mod");
-    fs::write(&path, program("", statements)).unwrap();
-    let args = ["optimize", path.to_str().unwrap(), "--format", "json", "--quiet"];
+    let (_folder, path) = module(program("", statements));
+    let args = ["optimize", &path, "--format", "json", "--quiet"];
     json(&[&args[..], options].concat())
 }
 
 #[test]
-fn the_time_asked_for_has_bounds() {
+fn requested_cycle_times_have_bounds() {
     let cases: [&[&str]; 6] = [
         &["--takt", "1e9"],
         &["--takt", "0.1"],
@@ -369,46 +318,38 @@ fn the_time_asked_for_has_bounds() {
 /// A takt that the original keeps is possible.
 #[test]
 fn a_takt_above_the_cycle_is_possible() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("m.mod");
-    fs::write(&path, program("", "")).unwrap();
-    let path = path.to_str().unwrap();
+    let (_folder, path) = module(program("", ""));
     let simulated =
-        json(&[&["simulate", path, "--format", "json", "--quiet"][..], &ROBOT].concat());
+        json(&[&["simulate", &path, "--format", "json", "--quiet"][..], &ROBOT].concat());
     let takt = format!("{:.4}", number(&simulated, "/cycle_s") + 1e-3);
-    let args = ["optimize", path, "--takt", &takt, "--format", "json", "--quiet"];
+    let args = ["optimize", &path, "--takt", &takt, "--format", "json", "--quiet"];
     json(&[&args[..], &ROBOT].concat());
 }
 
 /// `ModPos` changes the text of a movement with its target inside, which no guard detects.
 #[test]
-fn movements_with_the_target_in_them_stay() {
+fn movements_with_inline_targets_are_kept() {
     let own = "MoveAbsJ [[30,0,4,-20,65,30],[9E9,9E9,9E9,9E9,9E9,9E9]],v1000,fine,tP;";
     let named = "MoveAbsJ jB,v1000,fine,tP;";
     for (statement, args, stays) in
         [(own, &[][..], true), (own, &["--inline-targets"], false), (named, &[], false)]
     {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("m.mod");
-        fs::write(&path, program("", statement)).unwrap();
-        let args = [&["optimize", path.to_str().unwrap()], args, &ROBOT[..]].concat();
-        let told = text(&joulepath(&args).stdout);
-        assert_eq!(told.contains("inline-target: "), stays, "{told}");
+        let (_folder, path) = module(program("", statement));
+        let reported = stdout(&joulepath(&[&["optimize", &path], args, &ROBOT[..]].concat()));
+        assert_eq!(reported.contains("inline-target: "), stays, "{reported}");
     }
 }
 
 /// Guards compare values: a name may be edited or receive another value.
 #[test]
-fn a_name_with_another_value_keeps_the_stream_out() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("m.mod");
-    fs::write(&path, program("", "MoveAbsJ jA,v1000,fine,tP;")).unwrap();
+fn the_original_runs_where_a_name_has_another_value() {
+    let (folder, path) = module(program("", "MoveAbsJ jA,v1000,fine,tP;"));
     let out = folder.path().join("out");
-    let options = ["optimize", path.to_str().unwrap(), "--out", out.to_str().unwrap()];
-    let (told, code) = said(folder.path(), &options);
-    assert_eq!(code, Some(0), "{told}");
-    let files = ["m.mod", "Joulepath.mod"].map(|name| out.join(name));
-    let written = files.each_ref().map(|file| fs::read_to_string(file).unwrap());
+    let options = ["optimize", &path, "--out", out.to_str().unwrap()];
+    let (reported, code) = said(folder.path(), &options);
+    assert_eq!(code, Some(0), "{reported}");
+    let paths = ["m.mod", "Joulepath.mod"].map(|name| out.join(name));
+    let written = paths.each_ref().map(|file| fs::read_to_string(file).unwrap());
     let time = || {
         let args = ["simulate", out.to_str().unwrap(), "--format", "json", "--quiet"];
         number(&json(&[&args[..], &ROBOT].concat()), "/cycle_s")
@@ -421,15 +362,15 @@ fn a_name_with_another_value_keeps_the_stream_out() {
         [written[0].replacen("PROC main", slow, 1), written[1].clone()],
     ];
     for changed in changes {
-        for (file, text) in files.iter().zip(&changed) {
+        for (file, text) in paths.iter().zip(&changed) {
             fs::write(file, text).unwrap();
         }
         assert!(time() > 2.0 * before, "{}", changed[0]);
     }
     // Streams have their own zones.
     let small = "CONST zonedata z200:=[FALSE,1,1,1,1,1,1];\nPROC main";
-    fs::write(&files[0], written[0].replacen("PROC main", small, 1)).unwrap();
-    fs::write(&files[1], &written[1]).unwrap();
+    fs::write(&paths[0], written[0].replacen("PROC main", small, 1)).unwrap();
+    fs::write(&paths[1], &written[1]).unwrap();
     assert!((time() - before).abs() < 1e-6);
 }
 
@@ -450,32 +391,26 @@ fn streams_for_a_speed_override_take_no_longer() {
 
 /// In strings of RAPID, quotes and backslashes are doubled.
 #[test]
-fn arguments_in_messages_are_strings_of_rapid() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("m.mod");
+fn arguments_in_messages_are_escaped_for_rapid() {
     let function = "FUNC jointtarget fPlace(string sName\\num nUp)\nRETURN jB;\nENDFUNC\n";
     let statement = "MoveAbsJ fPlace(\"a\\nUp:=1),v1000,fine,tP;".replace("\"a", "\"a\"");
     let text = program("", &statement).replace("PROC main", &format!("{function}PROC main"));
-    fs::write(&path, text).unwrap();
+    let (folder, path) = module(text);
     let out = folder.path().join("out");
-    let (said, code) =
-        said(folder.path(), &["optimize", path.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    let (said, code) = said(folder.path(), &["optimize", &path, "--out", out.to_str().unwrap()]);
     assert_eq!(code, Some(0), "{said}");
     let module = fs::read_to_string(out.join("Joulepath.mod")).unwrap();
     assert!(module.contains("\"fPlace(\"\"a\"\"\\\\nUp:=1)\""), "{module}");
 }
 
 #[test]
-fn what_a_message_tells_to_give_does() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("m.mod");
-    fs::write(&path, program("", "WaitTime 0.5;")).unwrap();
-    let path = path.to_str().unwrap();
+fn the_value_that_an_error_message_proposes_is_accepted() {
+    let (folder, path) = module(program("", "WaitTime 0.5;"));
     for flag in ["--takt", "--time-factor"] {
-        let (message, _) = said(folder.path(), &["optimize", path, flag, "0.1"]);
+        let (message, _) = said(folder.path(), &["optimize", &path, flag, "0.1"]);
         let (_, advice) = message.split_once(&format!("give {flag} ")).unwrap();
         let least = advice.split(' ').next().unwrap();
-        let args = ["optimize", path, flag, least, "--format", "json"];
+        let args = ["optimize", &path, flag, least, "--format", "json"];
         let result = json(&[&args[..], &ROBOT].concat());
         let cycle = number(&result, "/optimized/cycle_s");
         assert!(cycle < number(&result, "/original/cycle_s"), "{flag} {least}: {cycle} s");
@@ -486,16 +421,13 @@ fn what_a_message_tells_to_give_does() {
 }
 
 #[test]
-fn slower_than_pays_has_a_note() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("m.mod");
+fn a_duration_that_needs_more_energy_causes_a_note() {
     // The extended arm needs more holding power than the final pose of the cycle.
     let far = "CONST jointtarget jFar:=[[20,85,-5,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n\
                CONST jointtarget jOut:=[[35,85,-5,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];";
     let out = "MoveAbsJ jFar,v1000,fine,tP;\nMoveAbsJ jOut,v1000,fine,tP;";
-    fs::write(&path, program(far, out)).unwrap();
-    let path = path.to_str().unwrap();
-    let args = ["optimize", path, "--time-factor", "10", "--format", "json", "--quiet"];
+    let (_folder, path) = module(program(far, out));
+    let args = ["optimize", &path, "--time-factor", "10", "--format", "json", "--quiet"];
     let result = json(&[&args[..], &KNOWN].concat());
     let note = result["notes"][1].as_str().unwrap();
     assert!(note.contains("1 of the rewritten runs take more energy than before"), "{note}");
@@ -505,11 +437,9 @@ fn slower_than_pays_has_a_note() {
 /// With a longer takt, the original is padded with a wait.
 #[test]
 fn a_longer_time_is_compared_with_a_padded_original() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("m.mod");
     let text = program("", "WaitTime 0.5;");
-    fs::write(&path, &text).unwrap();
-    let path = path.to_str().unwrap();
+    let (_folder, path) = module(&text);
+    let path = path.as_str();
     let simulated =
         || json(&[&["simulate", path, "--format", "json", "--quiet"][..], &KNOWN].concat());
     let alone = simulated();
@@ -537,7 +467,8 @@ fn a_longer_time_is_compared_with_a_padded_original() {
             fs::write(path, &text).unwrap();
             let error = number(&waiting, "/energy_j") - number(&result, "/original/energy_j");
             assert!(error.abs() < 1e-6, "{error} J");
-            let table = text_of(&[&["optimize", path][..], &time, form, &KNOWN].concat());
+            let args = [&["optimize", path][..], &time, form, &KNOWN].concat();
+            let table = stdout(&joulepath(&args));
             let row = table.lines().find(|line| line.starts_with("end of the cycle"));
             assert!(row.is_some_and(|row| row.contains("padding")), "{table}");
         }
@@ -550,7 +481,7 @@ fn a_longer_time_is_compared_with_a_padded_original() {
 /// With assumed limits a run may also use additional time. If the true limits are lower, it loses
 /// no more than the original: a known wait keeps a reserve.
 #[test]
-fn given_time_is_used_where_limits_are_assumed() {
+fn additional_time_is_used_where_limits_are_assumed() {
     let statements = "WaitTime 0.5;\nMoveAbsJ jB,v1000,fine,tP;\nWaitDI diGo,1;";
     let optimized = |options: &[&str]| {
         optimized(statements, &[&["--robot", "IRB1600-10/1.45"], options].concat())
@@ -582,13 +513,8 @@ fn given_time_is_used_where_limits_are_assumed() {
 /// Accepted additional loss of a retrofit under lower limits, as a share of the cycle.
 const LOSS: f64 = 0.005;
 
-/// Standard output of a command.
-fn text_of(args: &[&str]) -> String {
-    text(&joulepath(args).stdout)
-}
-
 #[test]
-fn odd_statements_have_their_true_reason() {
+fn unusual_statements_have_their_true_reason() {
     let clash = "CONST num nX:=1;\nPROC rB()\nENDPROC\nPROC rB()\nENDPROC\nVAR num nX:=2;";
     let heavy = "PERS tooldata tH:=[TRUE,[[0,0,90],[1,0,0,0]],[1E30,[0,0,9],[1,0,0,0],0,0,0]];";
     let endless = "PROC rEndless()\nrEndless;\nENDPROC";
@@ -612,14 +538,12 @@ fn odd_statements_have_their_true_reason() {
 
 #[test]
 fn an_unknown_call_is_the_reason_for_what_it_may_change() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("m.mod");
     let target = "PERS jointtarget jP:=[[40,10,4,-20,65,30],[9E9,9E9,9E9,9E9,9E9,9E9]];";
     // A tool that is passed counts as constant: no statement of the program writes it.
     let statements = "MoveAbsJ jB,v500,fine,tP;\nrElsewhere jP,tP;\nMoveAbsJ jA,v500,fine,tP;\n\
                       MoveAbsJ jP,v500,fine,tP;";
-    fs::write(&path, program(target, statements)).unwrap();
-    let args = ["optimize", path.to_str().unwrap(), "--format", "json"];
+    let (_folder, path) = module(program(target, statements));
+    let args = ["optimize", &path, "--format", "json"];
     let result = json(&[&args[..], &ROBOT].concat());
     let segments = result["segments"].as_array().unwrap();
     let reasons: Vec<&str> = segments.iter().filter_map(|s| s["reason"].as_str()).collect();
@@ -631,12 +555,10 @@ const FAR: &str = "CONST jointtarget jC:=[[-100,50,-30,0,0,0],[9E9,9E9,9E9,9E9,9
                    CONST jointtarget jD:=[[100,50,-30,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];";
 
 #[test]
-fn streams_without_indentation_and_over_long_ways_hold() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("m.mod");
+fn streams_work_without_indentation_and_over_long_distances() {
     let statements = "MoveAbsJ jC,vmax,fine,tP;\nMoveAbsJ jD,vmax,fine,tP;";
-    fs::write(&path, program(FAR, statements)).unwrap();
-    let args = ["optimize", path.to_str().unwrap(), "--format", "json"];
+    let (_folder, path) = module(program(FAR, statements));
+    let args = ["optimize", &path, "--format", "json"];
     let result = json(&[&args[..], &ROBOT].concat());
     for segment in &result["segments"].as_array().unwrap()[1..] {
         assert_eq!(segment["rewritten"], true, "{segment}");
@@ -646,11 +568,8 @@ fn streams_without_indentation_and_over_long_ways_hold() {
 /// First line of each timing segment, and whether it is a stream.
 fn streams(declarations: &str, statements: &str) -> Vec<(u64, bool)> {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("m.mod");
-    fs::write(&path, program(declarations, statements)).unwrap();
-    let args = ["optimize", path.to_str().unwrap(), "--format", "json", "--allow-faster-joints"];
-    let result = json(&[&args[..], &KNOWN].concat());
-    assert_eq!(result["verification"]["passed"], true);
+    let options = [&["--allow-faster-joints"], &KNOWN[..]].concat();
+    let result = command::optimize(folder.path(), program(declarations, statements), &options);
     let segments = result["segments"].as_array().unwrap().iter();
     let timing = segments.filter(|segment| segment["kind"] == "timing");
     timing.map(|s| (s["line_first"].as_u64().unwrap(), s["rewritten"] == true)).collect()
@@ -663,7 +582,7 @@ fn statements_may_stand_close_together() {
 }
 
 #[test]
-fn what_flies_on_into_the_next_pass_of_a_loop_stays() {
+fn a_fly_by_movement_into_the_next_loop_pass_is_kept() {
     // From the second pass on, the last and the first movement of the loop form one path.
     let flies = |zone: &str| {
         format!(
@@ -682,30 +601,26 @@ fn what_flies_on_into_the_next_pass_of_a_loop_stays() {
 }
 
 #[test]
-fn a_path_through_two_routines_costs_only_itself() {
+fn a_path_through_two_routines_does_not_prevent_other_streams() {
     let helper = "PROC rGo()\nMoveAbsJ jB,v500,fine,tP;\nMoveAbsJ jA,v500,z20,tP;\nENDPROC";
     let calls = "rGo;\nrGo;\nMoveAbsJ jA,v500,fine,tP;\nMoveAbsJ jB,v500,fine,tP;\n\
                  MoveAbsJ jA,v500,fine,tP;";
     let streams = streams(helper, calls);
-    let of = |line: u64| streams.iter().find(|(first, _)| *first == line).unwrap().1;
-    assert!(of(14) && of(15) && of(16), "{streams:?}");
+    let is_stream = |line: u64| streams.iter().find(|(first, _)| *first == line).unwrap().1;
+    assert!(is_stream(14) && is_stream(15) && is_stream(16), "{streams:?}");
 }
 
 #[test]
-fn the_program_itself_is_no_output_folder() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("m.mod");
+fn the_folder_of_the_program_is_refused_as_output() {
     let source = program("", "MoveAbsJ jB,v500,fine,tP;\nMoveAbsJ jA,v500,fine,tP;");
-    fs::write(&path, &source).unwrap();
+    let (folder, path) = module(&source);
     let out = folder.path().to_str().unwrap();
-    let (said, code) = said(folder.path(), &["optimize", path.to_str().unwrap(), "--out", out]);
-    assert_eq!(code, Some(2));
-    assert!(said.contains("--in-place"), "{said}");
+    refused(&[&["optimize", &path, "--out", out], &ROBOT[..]].concat(), "--in-place");
     assert_eq!(fs::read_to_string(&path).unwrap(), source);
 }
 
 #[test]
-fn two_entries_are_one_too_many() {
+fn two_entry_routines_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     for name in ["a.mod", "b.mod"] {
         fs::write(folder.path().join(name), program("", "")).unwrap();
@@ -723,10 +638,8 @@ fn two_entries_are_one_too_many() {
 fn a_load_gripped_while_waiting_is_held() {
     let part = "PERS loaddata lPart:=[6,[0,0,60],[1,0,0,0],0,0,0];";
     let energy = |statements: &str| {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("m.mod");
-        fs::write(&path, program(part, statements)).unwrap();
-        let args = ["simulate", path.to_str().unwrap(), "--format", "json"];
+        let (_folder, path) = module(program(part, statements));
+        let args = ["simulate", &path, "--format", "json"];
         number(&json(&[&args[..], &ROBOT].concat()), "/energy/idle_j")
     };
     let loaded = energy("MoveAbsJ jB,v1000,fine,tP;\nGripLoad lPart;\nWaitTime 20;");
@@ -748,15 +661,15 @@ fn the_list_of_modules_names_the_new_one() {
     assert_eq!(said(&folder, &args).1, Some(0));
     let entry = "\r\n\t<Module>Joulepath.mod</Module>";
     let expected = list.replace("m.mod</Module>", &format!("m.mod</Module>{entry}"));
-    assert_eq!(text(&fs::read(out.join("cell.pgf")).unwrap()), expected);
+    assert_eq!(fs::read_to_string(out.join("cell.pgf")).unwrap(), expected);
     // The output is a complete program.
     let (message, code) = said(&folder, &["simulate", out.join("cell.pgf").to_str().unwrap()]);
     assert_eq!((message.as_str(), code), ("", Some(0)));
     let args = ["optimize", path.to_str().unwrap(), "--in-place"];
     assert_eq!(said(&folder, &args).1, Some(0));
-    assert_eq!(text(&fs::read(&path).unwrap()), expected);
+    assert_eq!(fs::read_to_string(&path).unwrap(), expected);
     let kept = outside.path().join("cell.joulepath-undo/files/cell.pgf");
-    assert_eq!(text(&fs::read(kept).unwrap()), list);
+    assert_eq!(fs::read_to_string(kept).unwrap(), list);
 }
 
 #[test]
@@ -777,24 +690,25 @@ fn files_of_one_name_do_not_collide() {
 }
 
 #[test]
-fn text_diff_and_module_read_well() {
+fn text_diff_and_module_agree_with_the_snapshots() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
     let args = ["optimize", "fixtures/hard/encoding.mod", "--quiet"];
-    snapshots().bind(|| insta::assert_snapshot!("text", text(&joulepath(&args).stdout)));
+    snapshots().bind(|| insta::assert_snapshot!("text", stdout(&joulepath(&args))));
     let args = ["optimize", "fixtures/hard/encoding.mod", "--quiet", "--diff"];
-    snapshots().bind(|| insta::assert_snapshot!("diff", text(&joulepath(&args).stdout)));
+    snapshots().bind(|| insta::assert_snapshot!("diff", stdout(&joulepath(&args))));
     let args =
         ["optimize", "fixtures/hard/encoding.mod", "--quiet", "--out", out.to_str().unwrap()];
-    assert!(joulepath(&args).status.success());
-    let module = fs::read(out.join("Joulepath.mod")).unwrap();
-    snapshots().bind(|| insta::assert_snapshot!("module", text(&module)));
+    run(&args);
+    let module =
+        String::from_utf8_lossy(&fs::read(out.join("Joulepath.mod")).unwrap()).into_owned();
+    snapshots().bind(|| insta::assert_snapshot!("module", module));
 }
 
 #[test]
-fn json_has_the_contracts_fields() {
+fn json_has_the_fields_of_the_contract() {
     let args = ["optimize", "fixtures/hard/encoding.mod", "--quiet", "--format", "json"];
-    snapshots().bind(|| insta::assert_snapshot!("json", text(&joulepath(&args).stdout)));
+    snapshots().bind(|| insta::assert_snapshot!("json", stdout(&joulepath(&args))));
     let args = ["simulate", "fixtures/hard/encoding.mod", "--quiet", "--format", "json"];
-    snapshots().bind(|| insta::assert_snapshot!("simulate", text(&joulepath(&args).stdout)));
+    snapshots().bind(|| insta::assert_snapshot!("simulate", stdout(&joulepath(&args))));
 }

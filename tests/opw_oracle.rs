@@ -2,6 +2,9 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
+mod arms;
+
+use arms::same_angles;
 use joulepath::arm::kinematics::{fk, ik_all};
 use joulepath::arm::robot::{Model, find, from_toml};
 use proptest::prelude::*;
@@ -57,20 +60,13 @@ fn oracle(model: &Model) -> OPWKinematics {
     })
 }
 
-fn same(a: &[f64; 6], b: &[f64; 6]) -> bool {
-    a.iter().zip(b).all(|(a, b)| {
-        let d = (a - b).rem_euclid(std::f64::consts::TAU);
-        d.min(std::f64::consts::TAU - d) < ANGLE
-    })
-}
-
 proptest! {
     #![proptest_config(ProptestConfig {
         cases: 2_000, failure_persistence: None, ..Default::default()
     })]
 
     #[test]
-    fn agrees_with_the_other_solver(q in prop::array::uniform6(-3.0..3.0)) {
+    fn kinematics_agree_with_the_other_solver(q in prop::array::uniform6(-3.0..3.0)) {
         for model in &robots() {
             let other = oracle(model);
             let (ours, theirs) = (fk(model, &q), other.forward(&q));
@@ -85,10 +81,10 @@ proptest! {
 
             prop_assume!(q[4].sin().abs() > 1e-3);
             let found = ik_all(model, &ours).unwrap();
-            prop_assert!(found.iter().any(|solution| same(solution, &q)), "{}", model.name);
+            prop_assert!(found.iter().any(|solution| same_angles(solution, &q, ANGLE)), "{}", model.name);
             for solution in other.inverse(&theirs) {
                 prop_assert!(
-                    found.iter().any(|ours| same(ours, &solution)),
+                    found.iter().any(|ours| same_angles(ours, &solution, ANGLE)),
                     "{}: {solution:?} not in {found:?}", model.name
                 );
             }

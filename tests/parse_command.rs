@@ -2,19 +2,21 @@
 
 #![expect(clippy::unwrap_used, reason = "what cannot be run or read fails the test")]
 
-use std::path::Path;
-use std::process::{Command, Output};
+mod command;
 
+use std::path::Path;
+use std::process::Output;
+
+use command::{joulepath, parsed, stderr, stdout};
 use joulepath::rapid::syntax::{self, TokenKind};
 use serde_json::Value;
 
 fn parse(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_joulepath")).arg("parse").args(arguments).output().unwrap()
+    joulepath(&[&["parse"], arguments].concat())
 }
 
 fn json(arguments: &[&str]) -> Value {
-    let output = parse(&[&["--format", "json"], arguments].concat());
-    serde_json::from_slice(&output.stdout).unwrap()
+    parsed(&parse(&[&["--format", "json"], arguments].concat()))
 }
 
 fn folder(files: &[(&str, &[u8])]) -> tempfile::TempDir {
@@ -52,7 +54,7 @@ fn json_has_the_fields_of_the_contract() {
 }
 
 #[test]
-fn exit_codes_tell_errors_from_unusable_input() {
+fn exit_codes_distinguish_errors_from_unusable_input() {
     let folder = folder(&[("good.mod", GOOD), ("bad.mod", BAD), ("notes/read.me", b"")]);
     let path = |name: &str| shown(&folder.path().join(name)).to_owned();
     let code = |arguments: &[&str]| parse(arguments).status.code();
@@ -64,15 +66,14 @@ fn exit_codes_tell_errors_from_unusable_input() {
     // One file is readable, so the missing one is only a note.
     let output = parse(&[&path("gone.mod"), &path("good.mod")]);
     assert_eq!(output.status.code(), Some(0));
-    assert!(String::from_utf8_lossy(&output.stderr).contains("gone.mod"));
+    assert!(stderr(&output).contains("gone.mod"));
 }
 
 #[test]
 fn text_shows_errors_and_a_summary() {
     let folder = folder(&[("bad.mod", BAD)]);
     let path = folder.path().join("bad.mod");
-    let output = parse(&[shown(&path)]);
-    let text = String::from_utf8(output.stdout).unwrap();
+    let text = stdout(&parse(&[shown(&path)]));
     insta::assert_snapshot!(text.replace(shown(folder.path()), "(folder)"));
 }
 
@@ -94,14 +95,14 @@ fn movements_are_those_at_the_start_of_statements() {
     for file in value["files"].as_array().unwrap() {
         let path = file["path"].as_str().unwrap();
         let bytes = std::fs::read(path).unwrap();
-        let expected = at_statement_starts(&bytes);
+        let expected = movements_at_statement_starts(&bytes);
         assert_eq!(file["movements"], expected, "{path}");
         counted += expected;
     }
     assert!(counted > 20, "only {counted} movements in all fixtures");
 }
 
-fn at_statement_starts(bytes: &[u8]) -> usize {
+fn movements_at_statement_starts(bytes: &[u8]) -> usize {
     let parse = syntax::parse(bytes);
     let mut count = 0;
     let mut before = TokenKind::Semicolon;

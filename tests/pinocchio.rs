@@ -56,19 +56,19 @@ fn compare(model: &Model, fixture: &str) {
 }
 
 #[test]
-fn six_joints() {
+fn torques_of_six_joints_agree_with_pinocchio() {
     let fixture = include_str!("../fixtures/dynamics/six.csv");
     compare(&find("IRB1600-10/1.45").unwrap(), fixture);
 }
 
 #[test]
-fn three_joints_in_general_position() {
+fn torques_of_three_joints_agree_with_pinocchio() {
     let fixture = include_str!("../fixtures/dynamics/skew.csv");
     compare(&load("fixtures/dynamics/skew.toml").unwrap(), fixture);
 }
 
 #[test]
-fn seven_joints_in_general_position() {
+fn torques_of_seven_joints_agree_with_pinocchio() {
     let fixture = include_str!("../fixtures/dynamics/seven.csv");
     compare(&load("fixtures/dynamics/seven.toml").unwrap(), fixture);
 }

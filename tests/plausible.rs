@@ -12,8 +12,7 @@ use joulepath::retime::energy::change::Changes;
 use joulepath::retime::energy::plausible::{DRAWS, Robots, moments, plausibility};
 use joulepath::retime::energy::power::holding_w;
 use joulepath::retime::energy::{Account, EnergyParts, account};
-use joulepath::retime::motion::{Options, Simulation, simulate};
-use joulepath::tool::retrofit::read_program;
+use joulepath::retime::motion::{Options, Simulation};
 
 /// Number of compared robots.
 const ROBOTS: usize = 12;
@@ -30,14 +29,13 @@ const FAR: [f64; 3] = [0.5, 0.75, 0.6];
 
 fn simulated(model: &Model) -> (Simulation, Account) {
     let files = support::modules("pick_place");
-    let (program, entry) = read_program(&files, "main").unwrap();
-    let simulation = simulate(&program, entry, model, &Options::default());
+    let simulation = support::simulated(model, &files, &Options::default());
     let account = account(model, &simulation);
     (simulation, account)
 }
 
 #[test]
-fn sums_over_a_motion_tell_the_energy_of_each_robot() {
+fn sums_over_a_motion_give_the_energy_of_each_robot() {
     let model = find("IRB1600-10/1.45").unwrap();
     let (simulation, own) = simulated(&model);
     let sums = moments(&model, &simulation);
@@ -81,7 +79,7 @@ fn moments_of(model: &Model) -> [f64; 3] {
 /// Arms with unknown name and bodies and with the mass and payload of known robots: the rule by
 /// axes compared with meshes. A tenth may exceed [`FAR`].
 #[test]
-fn an_arm_of_axes_alone_is_near_its_meshes() {
+fn estimates_from_axes_are_close_to_estimates_from_meshes() {
     let tables: toml::Table =
         toml::from_str(include_str!("../src/arm/robot/prior/robots.toml")).unwrap();
     let mut far = Vec::new();
@@ -118,7 +116,7 @@ fn an_arm_of_axes_alone_is_near_its_meshes() {
 }
 
 #[test]
-fn an_arm_without_dynamics_gets_them() {
+fn an_arm_without_dynamics_gets_estimated_ones() {
     for name in joulepath::arm::robot::names().filter(|name| !name.starts_with("IRB14000")) {
         let bare = find(name).unwrap();
         let model = applied(estimated(bare.clone())).unwrap();
@@ -141,7 +139,7 @@ fn an_arm_without_dynamics_gets_them() {
 const MEAN_OFF: f64 = 0.01;
 
 #[test]
-fn the_mean_robot_takes_the_mean_of_the_energies() {
+fn the_mean_robot_needs_the_mean_energy() {
     let model = with_estimates(find("IRB2600-20/1.65").unwrap()).unwrap();
     let (simulation, _) = simulated(&model);
     let robots = Robots::new(&model).unwrap();
@@ -158,7 +156,7 @@ fn the_mean_robot_takes_the_mean_of_the_energies() {
 }
 
 #[test]
-fn a_balancer_helps_to_hold() {
+fn a_balancer_reduces_the_holding_power() {
     let model = with_estimates(find("IRB6700-200/2.6").unwrap()).unwrap();
     let without = Model { laws: Vec::new(), ..model.clone() };
     let forwards = [0.0, 1.0, 0.0, 0.0, 0.5, 0.0];
@@ -171,7 +169,7 @@ fn a_balancer_helps_to_hold() {
 }
 
 #[test]
-fn a_robot_of_another_name_has_the_spread_of_its_type() {
+fn a_renamed_robot_has_the_spread_of_its_type() {
     let known = with_estimates(find("IRB2600-20/1.65").unwrap()).unwrap();
     let text = "extends = \"IRB2600-20/1.65\"\nname = \"line 4\"\n";
     let renamed = with_estimates(from_toml("cell.toml", text).unwrap()).unwrap();
@@ -184,7 +182,7 @@ fn a_robot_of_another_name_has_the_spread_of_its_type() {
 }
 
 #[test]
-fn what_a_table_leaves_out_is_estimated() {
+fn missing_values_of_a_table_are_estimated() {
     let whole = with_estimates(find("IRB2600-20/1.65").unwrap()).unwrap();
     let with = |lines: &str| {
         let text = format!("extends = \"IRB2600-20/1.65\"\n{lines}");
@@ -201,7 +199,7 @@ fn what_a_table_leaves_out_is_estimated() {
 }
 
 #[test]
-fn deviations_that_a_file_states_are_used_and_absurd_ones_refused() {
+fn stated_standard_deviations_are_used_and_absurd_ones_refused() {
     let with = |lines: &str| {
         let text = format!("extends = \"IRB2600-20/1.65\"\n[drive]\nbase_w = 250\n{lines}");
         with_estimates(from_toml("cell.toml", &text).unwrap())
@@ -213,12 +211,12 @@ fn deviations_that_a_file_states_are_used_and_absurd_ones_refused() {
     };
     let [exact, stated] = ["base_w_sd = 2\n", ""].map(|lines| width(&with(lines).unwrap()));
     assert!(exact < 0.9 * stated, "{exact} J, {stated} J");
-    let said = with("base_w_sd = 2500\n").unwrap_err().to_string();
-    assert!(said.contains("base power"), "{said}");
+    let message = with("base_w_sd = 2500\n").unwrap_err().to_string();
+    assert!(message.contains("base power"), "{message}");
 }
 
 #[test]
-fn masses_that_no_arm_has_are_refused_by_name() {
+fn impossible_masses_are_refused_by_name() {
     let bare = find("IRB2600-20/1.65").unwrap();
     let text = to_toml(&Model { name: "an arm".into(), ..bare });
     let with_mass = |mass: &str| {
@@ -227,8 +225,8 @@ fn masses_that_no_arm_has_are_refused_by_name() {
         with_estimates(model).map_err(|error| error.to_string())
     };
     for mass in ["-250.0", "0.0", "2.5", "19000.0", "1e6"] {
-        let said = with_mass(mass).unwrap_err();
-        assert!(said.contains("mass") && said.contains("kg"), "{mass}: {said}");
+        let message = with_mass(mass).unwrap_err();
+        assert!(message.contains("mass") && message.contains("kg"), "{mass}: {message}");
     }
     for factor in [0.0, 1000.0] {
         let mut model = with_estimates(find("IRB2600-20/1.65").unwrap()).unwrap();
@@ -237,15 +235,15 @@ fn masses_that_no_arm_has_are_refused_by_name() {
             link.inertia *= factor;
         });
         let read = from_toml("arm.toml", &to_toml(&model));
-        let said = read.and_then(with_estimates).unwrap_err().to_string();
-        assert!(said.contains("[[link]] mass"), "{said}");
+        let message = read.and_then(with_estimates).unwrap_err().to_string();
+        assert!(message.contains("[[link]] mass"), "{message}");
     }
     let stated = with_mass("280.0").unwrap();
     let unknown = with_estimates(from_toml("arm.toml", &text).unwrap()).unwrap();
-    let of = |model: &Model| {
+    let width = |model: &Model| {
         let (simulation, own) = simulated(model);
         let all = plausibility(model, &simulation, &own).unwrap().motion_energy_j;
         (all.high / all.low).ln()
     };
-    assert!(of(&unknown) > of(&stated), "{} {}", of(&unknown), of(&stated));
+    assert!(width(&unknown) > width(&stated), "{} {}", width(&unknown), width(&stated));
 }

@@ -6,18 +6,17 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
+mod command;
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
+use command::{IRB1600 as ROBOT, KNOWN_LIMITS};
 use joulepath::arm::dynamics::{Data, Load, torque};
 use joulepath::arm::robot::{Model, Sharing, find};
 use serde_json::Value;
 
-const ROBOT: &str = "IRB1600-10/1.45";
-/// The robot with known limits.
-const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/known_limits.toml");
 /// Axis speeds of the data sheet, degrees/s.
 const SPEEDS: [f64; 6] = [180.0, 180.0, 185.0, 385.0, 400.0, 460.0];
 /// a1, c1, c2, c3, c4 of the data sheet, mm.
@@ -263,7 +262,7 @@ fn power(model: &Model, tau: &[f64], rigid: &[f64], friction: &[f64], qd: &[f64;
 }
 
 /// Without corner zones the robot stops at every point, with straight joint lines between.
-fn judge_polygon(stream: &Stream, way: &Way, original: &[Vector]) {
+fn check_polygon(stream: &Stream, way: &Way, original: &[Vector]) {
     const STEPS: usize = 40;
     let stops = [stream.start, *stream.points.last().unwrap()].map(|q| flange(&q).0);
     let from = std::iter::once(&stream.start).chain(&stream.points);
@@ -285,7 +284,7 @@ fn judge_polygon(stream: &Stream, way: &Way, original: &[Vector]) {
 }
 
 /// Checks a stream against the limits, its path and its predicted values.
-fn judge(model: &Model, stream: &Stream, segment: &Value, (way, ceiling): &(Way, f64)) {
+fn check_stream(model: &Model, stream: &Stream, segment: &Value, (way, ceiling): &(Way, f64)) {
     let name = format!("line {}", stream.line);
     let samples = play(stream);
     let limits = &model.limits;
@@ -328,7 +327,7 @@ fn judge(model: &Model, stream: &Stream, segment: &Value, (way, ceiling): &(Way,
         }
         before = Some((*t, watts, place));
     }
-    judge_polygon(stream, way, &original);
+    check_polygon(stream, way, &original);
     let (_, reached, ..) = samples[samples.len() - 1];
     match way {
         Way::Joints(to) => {
@@ -359,23 +358,13 @@ fn judge(model: &Model, stream: &Stream, segment: &Value, (way, ceiling): &(Way,
 }
 
 fn optimize(folder: &Path, options: &[&str]) -> (Value, String) {
-    let path = folder.join("m.mod");
-    fs::write(&path, program()).unwrap();
-    let out = folder.join("out");
-    let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
-        .args(["optimize", path.to_str().unwrap(), "--robot", KNOWN, "--allow-faster-joints"])
-        .args(["--format", "json"])
-        .args(["--quiet", "--out", out.to_str().unwrap()])
-        .args(options)
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let text = fs::read_to_string(out.join("Joulepath.mod")).unwrap();
-    (serde_json::from_slice(&output.stdout).unwrap(), text)
+    let robot = ["--robot", KNOWN_LIMITS, "--allow-faster-joints"];
+    let result = command::optimize(folder, program(), &[&robot[..], options].concat());
+    (result, fs::read_to_string(folder.join("out/Joulepath.mod")).unwrap())
 }
 
 #[test]
-fn emitted_points_hold_what_was_promised_of_them() {
+fn emitted_streams_keep_limits_paths_and_predicted_energies() {
     let model = find(ROBOT).unwrap();
     let ways = ways();
     for options in [
@@ -392,8 +381,8 @@ fn emitted_points_hold_what_was_promised_of_them() {
         let segments = result["segments"].as_array().unwrap();
         let mut stands: Option<[f64; 6]> = None;
         for stream in &streams {
-            let of = |s: &&Value| s["line_first"] == stream.line && s["kind"] == "timing";
-            let segment = segments.iter().find(of).unwrap();
+            let is_timing = |s: &&Value| s["line_first"] == stream.line && s["kind"] == "timing";
+            let segment = segments.iter().find(is_timing).unwrap();
             assert_eq!(segment["points"].as_u64().unwrap() as usize, stream.points.len());
             // Each stream starts at the end of the previous one.
             if let Some(stands) = stands {
@@ -404,9 +393,9 @@ fn emitted_points_hold_what_was_promised_of_them() {
                 let time = segment["time_after_s"].as_f64().unwrap();
                 assert!(time <= segment["time_before_s"].as_f64().unwrap() + TIME);
                 let end = stream.points.last().unwrap();
-                judge_polygon(stream, &ways[&stream.line].0, &joint_path(&stream.start, end));
+                check_polygon(stream, &ways[&stream.line].0, &joint_path(&stream.start, end));
             } else {
-                judge(&model, stream, segment, &ways[&stream.line]);
+                check_stream(&model, stream, segment, &ways[&stream.line]);
             }
             stands = stream.points.last().copied();
         }
@@ -414,7 +403,7 @@ fn emitted_points_hold_what_was_promised_of_them() {
 }
 
 #[test]
-fn layouts_are_the_same_motion() {
+fn both_layouts_give_the_same_motion() {
     let folder = tempfile::tempdir().unwrap();
     let (_, plain) = optimize(folder.path(), &["--layout", "plain"]);
     let (_, array) = optimize(folder.path(), &["--layout", "array"]);

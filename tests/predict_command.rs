@@ -1,10 +1,12 @@
 //! `predict` through the binary, and its logs.
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
-use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+mod command;
 
+use std::fs;
+use std::process::Output;
+
+use command::{refused, run, stderr, stdout, written};
 use joulepath::arm::dynamics::{Data, Load, torque};
 use joulepath::arm::robot::from_toml;
 use joulepath::learn::log::{Channel, ColumnMap, read_csv};
@@ -17,24 +19,8 @@ const TOOL0_W: f64 = 0.2;
 const DIFFERENTIATED_NM: f64 = 0.05;
 const SEVEN: &str = "fixtures/dynamics/seven.toml";
 
-fn joulepath(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_joulepath")).args(args).output().unwrap()
-}
-
-fn predict(robot: &str, log: &Path, more: &[&str]) -> Output {
-    let args = ["predict", "--robot", robot, "--log", log.to_str().unwrap()];
-    joulepath(&[&args[..], more].concat())
-}
-
-fn succeeded(output: &Output) -> String {
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
-
-fn written(folder: &tempfile::TempDir, name: &str, text: &str) -> PathBuf {
-    let path = folder.path().join(name);
-    fs::write(&path, text).unwrap();
-    path
+fn predict(robot: &str, log: &str, more: &[&str]) -> Output {
+    run(&[&["predict", "--robot", robot, "--log", log], more].concat())
 }
 
 /// Header and rows.
@@ -65,18 +51,17 @@ fn state(t: f64) -> Vec<f64> {
 }
 
 #[test]
-fn simulated_motion_is_predicted() {
+fn predictions_agree_with_the_simulation() {
     let folder = tempfile::tempdir().unwrap();
     let program = "MODULE M\nPROC main()\n\
         MoveAbsJ [[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v1000,fine,tool0;\n\
         MoveAbsJ [[40,30,-20,50,60,70],[9E9,9E9,9E9,9E9,9E9,9E9]],v1000,fine,tool0;\n\
         WaitTime 0.1;\nENDPROC\nENDMODULE\n";
     let program = written(&folder, "m.mod", program);
-    let motion = folder.path().join("motion.csv");
+    let motion = folder.path().join("motion.csv").display().to_string();
     let robot = "IRB1600-10/1.45";
-    let (from, to) = (program.to_str().unwrap(), motion.to_str().unwrap());
-    succeeded(&joulepath(&["simulate", from, "--robot", robot, "--trajectory", to]));
-    let predicted = succeeded(&predict(robot, &motion, &["-q"]));
+    run(&["simulate", &program, "--robot", robot, "--trajectory", &motion]);
+    let predicted = stdout(&predict(robot, &motion, &["-q"]));
     let simulated = fs::read_to_string(&motion).unwrap();
     let ((names, rows), (all, expected)) = (table(&predicted), table(&simulated));
     assert_eq!(names, ["t", "tau1", "tau2", "tau3", "tau4", "tau5", "tau6", "p_mech", "p_elec"]);
@@ -93,15 +78,15 @@ fn simulated_motion_is_predicted() {
 }
 
 #[test]
-fn seven_joints_in_any_form_of_csv() {
+fn logs_of_seven_joints_may_have_any_form_of_csv() {
     let folder = tempfile::tempdir().unwrap();
     let model = from_toml(SEVEN, &fs::read_to_string(SEVEN).unwrap()).unwrap();
     let degrees = |x: f64| format!("{}", x.to_degrees());
     let comma = |x: f64| format!("{x}").replace('.', ",");
-    let plain = written(&folder, "plain.csv", &log_of_seven(",", "", |x| x.to_string()));
-    let excel = written(&folder, "excel.csv", &log_of_seven(";", "", comma));
+    let plain = written(&folder, "plain.csv", log_of_seven(",", "", |x| x.to_string()));
+    let excel = written(&folder, "excel.csv", log_of_seven(";", "", comma));
     let tabs = log_of_seven("\t", "", |x| x.to_string()).replace('\n', "\r\n");
-    let tabs = written(&folder, "tabs.txt", &format!("\u{feff}{tabs}"));
+    let tabs = written(&folder, "tabs.txt", format!("\u{feff}{tabs}"));
     // Only angles have degrees; the time is unchanged.
     let turned = log_of_seven(",", "_deg", degrees);
     let turned: Vec<String> = turned
@@ -113,15 +98,14 @@ fn seven_joints_in_any_form_of_csv() {
             format!("{t},{rest}")
         })
         .collect();
-    let turned = written(&folder, "degrees.csv", &turned.join("\n"));
+    let turned = written(&folder, "degrees.csv", turned.join("\n"));
     let wide: Vec<u8> = format!("\u{feff}{}", fs::read_to_string(&plain).unwrap())
         .encode_utf16()
         .flat_map(u16::to_le_bytes)
         .collect();
-    let utf_16 = folder.path().join("utf16.csv");
-    fs::write(&utf_16, wide).unwrap();
+    let utf_16 = written(&folder, "utf16.csv", wide);
     for path in [plain, excel, tabs, turned, utf_16] {
-        let text = succeeded(&predict(SEVEN, &path, &[]));
+        let text = stdout(&predict(SEVEN, &path, &[]));
         let (names, rows) = table(&text);
         assert_eq!((names.len(), rows.len()), (1 + 7 + 2, 12));
         for (index, row) in rows.iter().enumerate() {
@@ -131,7 +115,7 @@ fn seven_joints_in_any_form_of_csv() {
             for joint in 0..7 {
                 let value: f64 = row[1 + joint].parse().unwrap();
                 let expected = found.rigid[joint] + found.friction[joint];
-                assert!((value - expected).abs() < 1e-9, "{}: {value} {expected}", path.display());
+                assert!((value - expected).abs() < 1e-9, "{path}: {value} {expected}");
             }
         }
     }
@@ -139,7 +123,7 @@ fn seven_joints_in_any_form_of_csv() {
 
 /// Rates and accelerations are computed from positions with other names and in degrees.
 #[test]
-fn positions_are_enough() {
+fn positions_alone_are_sufficient() {
     let folder = tempfile::tempdir().unwrap();
     let model = from_toml(SEVEN, &fs::read_to_string(SEVEN).unwrap()).unwrap();
     let swing = |joint: usize, t: f64| {
@@ -161,8 +145,8 @@ fn positions_are_enough() {
     let map = format!("t=Time,{}", joints.join(","));
     let load = "3,10,-20,150";
     let output = predict(SEVEN, &path, &["--map", &map, "--load", load]);
-    assert!(String::from_utf8_lossy(&output.stderr).contains("rates and accelerations"));
-    let found = succeeded(&output);
+    assert!(stderr(&output).contains("rates and accelerations"));
+    let found = stdout(&output);
     let (_, cells) = table(&found);
     assert_eq!(cells.len(), rows);
     let load = Load { mass: 3.0, com: Vector3::new(0.01, -0.02, 0.15), ..Load::none() };
@@ -181,20 +165,21 @@ fn positions_are_enough() {
 
 /// Diagnosed sensor effects apply to a log's torques; powers do not contain them.
 #[test]
-fn predictions_are_those_of_the_log() {
+fn predicted_torques_contain_sensor_effects() {
     let folder = tempfile::tempdir().unwrap();
-    let motion = written(&folder, "motion.csv", &log_of_seven(",", "", |x| x.to_string()));
+    let motion = written(&folder, "motion.csv", log_of_seven(",", "", |x| x.to_string()));
     let seven = fs::canonicalize(SEVEN).unwrap();
     let overlay = |effects: &str| {
         let text = format!("extends = \"{}\"\nname = \"x\"\n{effects}", seven.display());
         written(&folder, "robot.toml", &text)
     };
-    let of =
-        |effects: &str| succeeded(&predict(overlay(effects).to_str().unwrap(), &motion, &["-q"]));
-    let plain = of("");
-    let changed = of("[effects.torque_offset]\noffset_j2 = 1.5\n\
-                      [effects.torque_constant]\nerror_j3 = 0.1\n");
-    let moved = of("[effects.encoder_offset]\noffset_j2 = 0.01\n");
+    let predicted = |effects: &str| stdout(&predict(&overlay(effects), &motion, &["-q"]));
+    let plain = predicted("");
+    let changed = predicted(
+        "[effects.torque_offset]\noffset_j2 = 1.5\n\
+                      [effects.torque_constant]\nerror_j3 = 0.1\n",
+    );
+    let moved = predicted("[effects.encoder_offset]\noffset_j2 = 0.01\n");
     assert_ne!(plain, moved);
     let ((_, before), (_, after)) = (table(&plain), table(&changed));
     for (before, after) in before.iter().zip(&after) {
@@ -211,8 +196,8 @@ fn doubtful_units_are_noted() {
     let folder = tempfile::tempdir().unwrap();
     let notes = |text: &str, rows: usize| {
         let output = predict(SEVEN, &written(&folder, "log.csv", text), &[]);
-        assert_eq!(table(&succeeded(&output)).1.len(), rows);
-        String::from_utf8(output.stderr).unwrap()
+        assert_eq!(table(&stdout(&output)).1.len(), rows);
+        stderr(&output)
     };
     let good = log_of_seven(",", "", |x| x.to_string());
     let row = |t: f64, angle: f64| format!("{t}{}\n", format!(",{angle}").repeat(7));
@@ -241,15 +226,15 @@ fn doubtful_units_are_noted() {
 fn accelerations_of_some_joints_are_used() {
     let folder = tempfile::tempdir().unwrap();
     let good = log_of_seven(",", "", |x| x.to_string());
-    let whole = succeeded(&predict(SEVEN, &written(&folder, "a.csv", &good), &["-q"]));
+    let whole = stdout(&predict(SEVEN, &written(&folder, "a.csv", &good), &["-q"]));
     let without = good.replacen("qdd6", "none6", 1).replacen("qdd7", "none7", 1);
     let output = predict(SEVEN, &written(&folder, "b.csv", &without), &[]);
-    let notes = String::from_utf8_lossy(&output.stderr).into_owned();
+    let notes = stderr(&output);
     assert!(notes.contains("accelerations of joints 6, 7 are not logged"), "{notes}");
     let none = (1..=7).fold(good, |text, n| text.replacen(&format!("qdd{n}"), "none", 1));
-    let none = succeeded(&predict(SEVEN, &written(&folder, "c.csv", &none), &["-q"]));
+    let none = stdout(&predict(SEVEN, &written(&folder, "c.csv", &none), &["-q"]));
     let tau1 = |text: &str| table(text).1[6][1].parse::<f64>().unwrap();
-    let (whole, some, none) = (tau1(&whole), tau1(&succeeded(&output)), tau1(&none));
+    let (whole, some, none) = (tau1(&whole), tau1(&stdout(&output)), tau1(&none));
     assert!((some - whole).abs() < 0.1 * (none - whole).abs(), "{whole} {some} {none}");
 }
 
@@ -271,10 +256,10 @@ fn bad_rows_are_named_and_left_out() {
     assert!(log.column(Channel::Power).is_none());
 
     let folder = tempfile::tempdir().unwrap();
-    let path = written(&folder, "bad.csv", &lines.join("\n"));
+    let path = written(&folder, "bad.csv", lines.join("\n"));
     let output = predict(SEVEN, &path, &[]);
-    assert_eq!(table(&succeeded(&output)).1.len(), 12);
-    assert!(String::from_utf8_lossy(&output.stderr).contains("row 3 left out"));
+    assert_eq!(table(&stdout(&output)).1.len(), 12);
+    assert!(stderr(&output).contains("row 3 left out"));
 }
 
 #[test]
@@ -296,17 +281,14 @@ fn unusable_logs_are_refused_with_the_way_out() {
         (good.replacen("q3", "p3", 1), "none for joint 3"),
         (good.replacen("q3", "q2_deg", 1), "same quantity"),
     ] {
-        let output = predict(SEVEN, &written(&folder, "log.csv", &text), &["-q"]);
-        let message = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(2), "{message}");
-        assert!(message.contains(way_out), "{message}");
+        let log = written(&folder, "log.csv", &text);
+        refused(&["predict", "--robot", SEVEN, "--log", &log, "-q"], way_out);
     }
-    let missing = predict(SEVEN, &folder.path().join("none.csv"), &[]);
-    assert_eq!(missing.status.code(), Some(2));
+    refused(&["predict", "--robot", SEVEN, "--log", "none.csv"], "none.csv");
 }
 
 #[test]
-fn an_estimated_robot_predicts_and_says_so() {
+fn predictions_of_an_estimated_robot_have_a_note() {
     let folder = tempfile::tempdir().unwrap();
     let rows = (0..200).map(|i| {
         let t = 0.01 * f64::from(i);
@@ -315,7 +297,6 @@ fn an_estimated_robot_predicts_and_says_so() {
     });
     let text = "t,q1,q2,q3,q4,q5,q6\n".to_owned() + &rows.collect::<String>();
     let output = predict("IRB6640-180/2.55", &written(&folder, "l.csv", &text), &[]);
-    let notes = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(0), "{notes}");
+    let notes = stderr(&output);
     assert!(notes.contains("estimated: ") && notes.contains("robots show"), "{notes}");
 }

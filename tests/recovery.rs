@@ -5,23 +5,13 @@
 
 mod support;
 
-use std::path::Path;
-
 use joulepath::rapid::syntax::{self, Parse};
-use support::token_ranges;
+use support::{module_paths, token_ranges};
 
 /// The shipped programs, without the fixtures of the parser.
 fn programs() -> Vec<(String, Vec<u8>)> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
-    let mut programs: Vec<(String, Vec<u8>)> = ["hard", "paper", "pick_place"]
-        .iter()
-        .flat_map(|folder| std::fs::read_dir(root.join(folder)).unwrap())
-        .map(|entry| entry.unwrap().path())
-        .filter(|path| path.extension().is_some_and(|end| end == "mod" || end == "sys"))
-        .map(|path| (path.display().to_string(), std::fs::read(&path).unwrap()))
-        .collect();
-    programs.sort();
-    programs
+    let paths = ["hard", "paper", "pick_place"].into_iter().flat_map(module_paths);
+    paths.map(|path| (path.display().to_string(), std::fs::read(&path).unwrap())).collect()
 }
 
 fn statements(parse: &Parse) -> usize {
@@ -29,7 +19,7 @@ fn statements(parse: &Parse) -> usize {
 }
 
 #[test]
-fn a_token_too_few_or_too_many_is_one_error() {
+fn a_missing_or_surplus_token_causes_one_error() {
     let mut mutations = 0;
     let mut wrong = Vec::new();
     for (path, source) in programs() {

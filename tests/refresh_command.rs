@@ -2,10 +2,12 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
-use std::collections::BTreeMap;
+mod command;
+
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+
+use command::{IRB1600, files, refused, run, stdout};
 
 /// A program with CRLF, a compact IF before a load, and two files.
 const MAIN: &str = "MODULE Main\r\n\
@@ -28,22 +30,10 @@ const DATA: &str = "MODULE CellData\n\
     ENDMODULE\n";
 const STREAMS: &str = "Joulepath.mod";
 
-fn joulepath(arguments: &[&str], path: &Path) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_joulepath"));
-    command.args(arguments).arg(path).args(["--robot", "IRB1600-10/1.45", "--quiet"]);
-    command.output().unwrap()
-}
-
+/// Standard output of a command for a program.
 fn done(arguments: &[&str], path: &Path) -> String {
-    let output = joulepath(arguments, path);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
-}
-
-/// All files of a folder.
-fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap());
-    entries.map(|entry| (entry.file_name().into(), fs::read(entry.path()).unwrap())).collect()
+    let common = [path.to_str().unwrap(), "--robot", IRB1600, "--quiet"];
+    stdout(&run(&[arguments, &common].concat()))
 }
 
 /// A folder with the program; in its data `from` is replaced.
@@ -62,21 +52,21 @@ fn edit(path: &Path, from: &str, to: &str) {
 }
 
 #[test]
-fn nothing_changed_is_no_difference() {
+fn refreshing_an_unchanged_program_changes_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let cell = cell(folder.path(), "cell", "", "");
     done(&["optimize", "--in-place"], &cell);
     let before = files(&cell);
-    assert!(before[Path::new("Main.mod")] != MAIN.as_bytes());
+    assert!(before["Main.mod"] != MAIN.as_bytes());
     assert_eq!(done(&["refresh"], &cell), "");
     assert_eq!(done(&["refresh", "--in-place"], &cell), "");
     assert_eq!(files(&cell), before);
     done(&["optimize", "--undo"], &cell);
-    assert_eq!(files(&cell)[Path::new("Main.mod")], MAIN.as_bytes());
+    assert_eq!(files(&cell)["Main.mod"], MAIN.as_bytes());
 }
 
 #[test]
-fn a_position_that_was_taught_anew_has_streams_again() {
+fn a_changed_position_gets_new_streams() {
     let folder = tempfile::tempdir().unwrap();
     let (from, to) = ("[850,300,800]", "[850,300,812.5]");
     let changed = cell(folder.path(), "changed", from, to);
@@ -104,7 +94,7 @@ fn a_position_that_was_taught_anew_has_streams_again() {
 }
 
 #[test]
-fn a_movement_that_was_edited_and_a_stated_serial_number_stay() {
+fn refresh_keeps_edited_movements_and_a_stated_serial_number() {
     let folder = tempfile::tempdir().unwrap();
     let cell = cell(folder.path(), "cell", "", "");
     done(&["optimize", "--in-place"], &cell);
@@ -120,7 +110,7 @@ fn a_movement_that_was_edited_and_a_stated_serial_number_stay() {
 }
 
 #[test]
-fn streams_that_no_longer_pay_are_taken_out() {
+fn streams_whose_data_may_change_are_removed() {
     let folder = tempfile::tempdir().unwrap();
     let cell = cell(folder.path(), "cell", "", "");
     done(&["optimize", "--in-place"], &cell);
@@ -139,7 +129,7 @@ fn streams_that_no_longer_pay_are_taken_out() {
 }
 
 #[test]
-fn what_has_no_streams_is_refused() {
+fn a_program_without_streams_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let cell = cell(folder.path(), "cell", "", "");
     let before = files(&cell);
@@ -148,14 +138,12 @@ fn what_has_no_streams_is_refused() {
         (&["refresh", "--in-place"], "joulepath optimize"),
         (&["refresh", "--undo"], "optimize --undo"),
     ] {
-        let output = joulepath(arguments, &cell);
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(2), "{said}");
-        assert!(said.contains(says), "{arguments:?}: {said}");
+        let common = [cell.to_str().unwrap(), "--robot", IRB1600, "--quiet"];
+        refused(&[arguments, &common].concat(), says);
     }
     assert_eq!(files(&cell), before);
     // A program with streams does not get streams again.
     done(&["optimize", "--in-place"], &cell);
-    let said = done(&["optimize", "--format", "json"], &cell);
-    assert!(said.contains("joulepath refresh"), "{said}");
+    let result = done(&["optimize", "--format", "json"], &cell);
+    assert!(result.contains("joulepath refresh"), "{result}");
 }

@@ -79,7 +79,7 @@ proptest! {
 }
 
 #[test]
-fn ranks_are_those_of_the_literature() {
+fn ranks_agree_with_the_literature() {
     let [six, skew, rods, wrist, seven, one, tilted] = robots();
     let ranks = |model: &Model| [rigid_bodies(model), base_parameters(model)].map(|b| b.rank());
     assert_eq!(ranks(&six), [36, 58]);

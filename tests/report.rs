@@ -1,31 +1,25 @@
 //! The HTML report of a retrofit.
 #![expect(clippy::unwrap_used, reason = "a failed set-up fails the test")]
 
+mod support;
+
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::sync::LazyLock;
 
-use joulepath::arm::robot::{self, Model};
+use joulepath::arm::robot::Model;
 use joulepath::rapid::text::{FileId, SourceFile, Span};
 use joulepath::retime::energy::{Account, EnergyParts, account};
 use joulepath::retime::motion::timeline::What;
-use joulepath::retime::motion::{Options, Simulation, simulate};
+use joulepath::retime::motion::{Options, Simulation};
 use joulepath::retime::optimize::check::Check;
 use joulepath::retime::optimize::reason::Reason;
 use joulepath::tool::report::html::optimize_report;
 use joulepath::tool::retrofit::{
     Figures, OutputFile, OutputKind, Retrofit, Segment, SegmentKind, Settings, SignalKind,
-    SignalShift, Source, Verification, read_program, retrofit,
+    SignalShift, Source, Verification, retrofit,
 };
-
-fn source(index: u32, path: &str, bytes: Vec<u8>) -> Source {
-    let file = SourceFile::new(FileId(index), path.to_owned(), bytes);
-    Source { file, relative: path.to_owned() }
-}
-
-fn irb1600() -> Model {
-    robot::find("IRB1600-10/1.45").unwrap()
-}
+use support::{irb1600, modules, program, simulated, sources};
 
 /// The retrofit of a whole cell, with its page.
 struct Cell {
@@ -36,18 +30,7 @@ struct Cell {
 }
 
 static CELL: LazyLock<Cell> = LazyLock::new(|| {
-    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/pick_place");
-    let mut paths: Vec<_> =
-        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    paths.sort();
-    let files: Vec<Source> = paths
-        .iter()
-        .enumerate()
-        .map(|(i, path)| {
-            let name = path.file_name().unwrap().to_str().unwrap();
-            source(i as u32, name, std::fs::read(path).unwrap())
-        })
-        .collect();
+    let files = modules("pick_place");
     let model = irb1600();
     let settings = Settings::default();
     let retrofit = retrofit(&files, &model, &settings, &|_, _| ()).unwrap();
@@ -91,9 +74,7 @@ ENDMODULE
 const SPACING: f64 = 0.1;
 
 fn run(model: &Model, text: &str) -> (Simulation, Account) {
-    let files = [source(0, "Cell.mod", text.into())];
-    let (program, entry) = read_program(&files, "main").unwrap();
-    let simulation = simulate(&program, entry, model, &Options::default());
+    let simulation = simulated(model, &program(text), &Options::default());
     let account = account(model, &simulation);
     (simulation, account)
 }
@@ -203,7 +184,8 @@ fn small(path: &str) -> Small {
         before,
         after,
     };
-    Small { files: vec![source(0, path, text.into_bytes())], model, retrofit }
+    let file = SourceFile::new(FileId(0), path.to_owned(), text.into_bytes());
+    Small { files: sources(vec![file]), model, retrofit }
 }
 
 fn small_page(path: &str) -> String {
@@ -337,7 +319,7 @@ fn pages_are_well_formed() {
 }
 
 #[test]
-fn pages_load_nothing() {
+fn pages_load_no_external_content() {
     for foreign in ["http://", "https://", "src=", "@import", "<script", "<link", "url("] {
         assert!(!CELL.page.contains(foreign), "{foreign}");
     }
@@ -351,7 +333,7 @@ fn the_same_input_gives_the_same_bytes() {
 }
 
 #[test]
-fn foreign_text_stays_text() {
+fn foreign_text_is_escaped() {
     let mut small = small("<img onerror=\"x\">/Cell's & <b>.mod");
     small.model.name = "IRB <script>".into();
     small.retrofit.segments[0].reason = Some(Reason::Instruction("<i>\"&'".into()));
@@ -384,7 +366,7 @@ fn cells(page: &str, label: &str) -> Vec<f64> {
 }
 
 #[test]
-fn segments_and_the_rest_tile_the_cycle() {
+fn segments_and_the_rest_add_up_to_the_cycle() {
     const ROUNDING: [f64; 4] = [0.0005, 0.0005, 0.05, 0.05];
     let listed: BTreeSet<usize> =
         CELL.retrofit.segments.iter().flat_map(|segment| segment.events.iter().copied()).collect();
@@ -417,7 +399,7 @@ fn segments_and_the_rest_tile_the_cycle() {
 }
 
 #[test]
-fn the_lines_of_the_source_carry_the_whole_energy() {
+fn energies_of_the_source_add_up_to_the_total() {
     let source = CELL.page.split("<section id=\"source\">").nth(1).unwrap();
     let source = source.split("</section>").next().unwrap();
     let mut sums = [0.0; 2];
@@ -480,7 +462,7 @@ fn each_rewritten_segment_has_its_arrow() {
 }
 
 #[test]
-fn the_dwells_add_up_to_the_potential() {
+fn savings_of_the_dwells_add_up_to_the_potential() {
     let table = CELL.page.split("<section id=\"dwells\">").nth(1).unwrap();
     let table = table.split("</section>").next().unwrap();
     let potentials: Vec<f64> = table

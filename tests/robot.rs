@@ -44,7 +44,7 @@ fn changed(from: &str, to: &str) -> String {
 }
 
 #[test]
-fn names_as_people_write_them() {
+fn robot_names_may_be_written_in_several_ways() {
     for name in [
         "IRB1600-10/1.45",
         "IRB 1600-10/1.45",
@@ -64,7 +64,7 @@ fn names_as_people_write_them() {
 }
 
 #[test]
-fn unknown_names_get_a_way_out() {
+fn unknown_names_are_refused_with_the_way_out() {
     assert_snapshot!(find("IRB1600-10/1.54").unwrap_err(), @r#"unknown robot "IRB1600-10/1.54", did you mean "IRB1600-10/1.45"?; joulepath robots list shows the known ones; or give a robot TOML or URDF file"#);
     assert_snapshot!(find("UR10").unwrap_err(), @r#"unknown robot "UR10"; joulepath robots list shows the known ones; or give a robot TOML or URDF file"#);
 }
@@ -85,7 +85,7 @@ fn irb1600_is_complete() {
 }
 
 #[test]
-fn axis_2_reaches_further_while_axis_1_looks_forward() {
+fn axis_2_has_a_wider_range_while_axis_1_points_forward() {
     let model = irb1600();
     let at = |q1: f64, q2: f64| {
         limits_ok(&model, &[q1.to_radians(), q2.to_radians(), 0.0, 0.0, 0.0, 0.0])
@@ -97,7 +97,7 @@ fn axis_2_reaches_further_while_axis_1_looks_forward() {
 
 /// Paes et al. 2014, table 3: holding power of joints 1 to 3, in assumed poses.
 #[test]
-fn holding_powers_of_the_paper() {
+fn holding_powers_agree_with_the_paper() {
     let model = irb1600();
     let loss = &model.motors.as_ref().unwrap().loss_constant;
     let holding = |degrees: [f64; 6]| -> Vec<f64> {
@@ -119,7 +119,7 @@ fn holding_powers_of_the_paper() {
 }
 
 #[test]
-fn a_small_robot_from_its_text() {
+fn a_robot_is_read_from_its_text() {
     let model = from_toml("two.toml", TWO_JOINTS).unwrap();
     assert_eq!(model.dof, 2);
     assert!(!model.has_dynamics());
@@ -132,7 +132,7 @@ fn a_small_robot_from_its_text() {
 }
 
 #[test]
-fn base_arm_loads_and_effects() {
+fn base_arm_loads_and_effects_are_read() {
     let text = "extends = \"irb 1600-10/1.45\"\nname = \"hung\"\n\
                 [kinematics.base]\norigin = [1, 0, 2]\nrpy = [3.141592653589793, 0, 0]\n\
                 [[arm_load]]\njoint = 3\nmass = 4\ncom = [0.1, 0, 0.2]\ninertia = [0, 0, 0, 0, 0, 0]\n\
@@ -173,7 +173,7 @@ fn an_overlay_replaces_numbers_with_their_origin() {
 }
 
 #[test]
-fn files_extend_files_beside_them() {
+fn files_may_extend_files_in_the_same_folder() {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| {
         let path = folder.path().join(name);
@@ -255,7 +255,7 @@ fn wrong_files_name_the_place_and_the_way_out() {
 }
 
 #[test]
-fn an_overlay_says_the_losses_of_motors_its_own_way() {
+fn an_overlay_may_state_motor_losses_in_another_form() {
     let plain = irb1600();
     let overlay = "extends = \"IRB1600-10/1.45\"\n[motors]\nresistance = [1, 1, 1, 1, 1, 1]\n";
     let motors = from_toml("robot.toml", overlay).unwrap().motors.unwrap();
@@ -265,7 +265,7 @@ fn an_overlay_says_the_losses_of_motors_its_own_way() {
 }
 
 #[test]
-fn robots_without_published_lengths_are_no_typing_errors() {
+fn robots_without_published_lengths_are_named_as_such() {
     for name in ["IRB6660", "IRB6660-205/1.9", "IRB 8700-800/3.5", "ROB1_8700_3.50_800"] {
         let message = find(name).unwrap_err().to_string();
         assert!(message.contains("not published") && !message.contains("mean"), "{message}");
@@ -279,7 +279,7 @@ proptest::proptest! {
 
     /// Reading a damaged file gives an error or a robot, but never a panic.
     #[test]
-    fn damaged_files_do_no_harm(
+    fn damaged_files_cause_no_panic(
         cuts in proptest::collection::vec((0usize..700, 0usize..12, "[\\[\\]{}=\"a-z0-9.,\n-]{0,6}"), 1..4),
     ) {
         let mut text = TWO_JOINTS.to_owned();

@@ -2,9 +2,12 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
-use std::fs;
-use std::process::{Command, Output};
+mod command;
 
+use std::fs;
+use std::process::Output;
+
+use command::{parsed, stderr, stdout, written};
 use insta::assert_snapshot;
 use joulepath::arm::dynamics::{Data, Load, gravity};
 use joulepath::arm::kinematics::{conf_of, fk, ik_all, ik_conf, limits_ok};
@@ -99,7 +102,7 @@ fn the_chain_of_a_urdf_ends_at_its_flange() {
 }
 
 #[test]
-fn what_is_fixed_to_a_link_weighs_on_it() {
+fn a_fixed_part_adds_to_the_mass_of_its_link() {
     let model = model(&arm());
     let fore = &model.links[1];
     assert_eq!(fore.mass, 4.0);
@@ -118,7 +121,7 @@ fn a_urdf_without_inertias_has_kinematics_only() {
 }
 
 #[test]
-fn seven_joints_are_modelled() {
+fn a_urdf_may_have_seven_joints() {
     let names: Vec<String> = (0..8).map(|i| format!("l{i}")).collect();
     let mut urdf = String::from("<robot name=\"seven\">\n");
     urdf.extend(names.iter().map(|name| link(name)));
@@ -132,7 +135,7 @@ fn seven_joints_are_modelled() {
 
 /// A URDF of an ABB arm has the closed inverse and the same configurations.
 #[test]
-fn an_arm_given_joint_by_joint_is_recognised() {
+fn a_urdf_of_an_abb_arm_has_closed_inverse_kinematics() {
     let known = find("IRB1600-10/1.45").unwrap();
     let [a1, c1, c2, c3, c4] = {
         let opw = known.kinematics.opw.as_ref().unwrap();
@@ -274,7 +277,7 @@ fn a_motion_configuration_is_an_overlay_of_its_robot() {
 }
 
 #[test]
-fn rods_bound_the_angle_between_the_arms() {
+fn rods_limit_the_angle_between_the_arms() {
     let text = configuration()
         .replace("ROB1_1600_1.45_10", "ROB1_4400L_2.43_30")
         .replace("1.13446", "1.13446 -upper_joint_coupl_bound 0.9 -lower_joint_coupl_bound -0.8");
@@ -326,7 +329,7 @@ fn wrong_configurations_name_the_place_and_the_way_out() {
 
 /// Every message has the line of the file, the key, and the permitted values.
 #[test]
-fn figures_of_a_configuration_are_refused_where_they_stand() {
+fn wrong_values_of_a_configuration_are_refused_with_their_line() {
     let whole = configuration();
     let cut = |end: &str| whole[..whole.find(end).unwrap() + end.len()].to_owned();
     let load = "-mass 4.5";
@@ -372,7 +375,7 @@ fn figures_of_a_configuration_are_refused_where_they_stand() {
 }
 
 #[test]
-fn a_load_hangs_once_where_its_arm_refers_to_it() {
+fn a_load_is_added_once_to_the_arm_that_names_it() {
     let plain = find("IRB1600-10/1.45").unwrap();
     let added = |text: &str| -> Vec<f64> {
         let toml = import_moc("MOC.cfg", text, None).unwrap();
@@ -388,9 +391,8 @@ fn a_load_hangs_once_where_its_arm_refers_to_it() {
 
 /// The check detects wrong units that no bound of a single value reveals.
 #[test]
-fn the_check_doubts_figures_in_other_units() {
+fn the_check_reports_values_in_other_units() {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("robot.toml").display().to_string();
     let link =
         "[[link]]\nmass = 31\ncom = [0, 0, 0]\ninertia = [530000, 540000, 120000, 0, 0, 0]\n";
     for (more, place) in [
@@ -403,7 +405,8 @@ fn the_check_doubts_figures_in_other_units() {
         (format!("[limits]\nposition = [{}]\n", "[-45, 45],".repeat(6)), "joint 1: up to 45 rad"),
         ("[kinematics.opw]\na1 = 15\n".into(), "m long"),
     ] {
-        fs::write(&path, format!("extends = \"IRB1600-10/1.45\"\n{more}")).unwrap();
+        let text = format!("extends = \"IRB1600-10/1.45\"\n{more}");
+        let path = written(&folder, "robot.toml", text);
         let output = robots(&["check", &path]);
         assert_eq!(output.status.code(), Some(1), "{more}");
         assert!(stdout(&output).contains(place), "{}", stdout(&output));
@@ -411,21 +414,19 @@ fn the_check_doubts_figures_in_other_units() {
 }
 
 #[test]
-fn what_a_file_lacks_is_added_by_extending_the_file() {
+fn missing_data_are_added_by_extending_the_file() {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("arm.urdf").display().to_string();
-    fs::write(&path, arm().replace(INERTIAL, "")).unwrap();
+    let path = written(&folder, "arm.urdf", arm().replace(INERTIAL, ""));
     let message = ready(&load(&path).unwrap(), Use::Predict).unwrap_err().to_string();
     let extends = format!("extends = \"{path}\"");
     assert!(message.contains(&extends), "{message}");
-    let overlay = folder.path().join("more.toml").display().to_string();
     let link = "[[link]]\nmass = 1\ncom = [0, 0, 0]\ninertia = [1, 1, 1, 0, 0, 0]\n";
-    fs::write(&overlay, format!("{extends}\n{}", link.repeat(2))).unwrap();
+    let overlay = written(&folder, "more.toml", format!("{extends}\n{}", link.repeat(2)));
     assert!(ready(&load(&overlay).unwrap(), Use::Predict).is_ok());
 }
 
 #[test]
-fn ranges_are_shown_as_they_are() {
+fn show_prints_exact_position_ranges() {
     let shown = stdout(&robots(&["show", "IRB14000 right"]));
     assert!(shown.contains("-143.5…43.5 ") && shown.contains("-123.5…80 "), "{shown}");
 }
@@ -440,33 +441,29 @@ fn the_robot_of_the_backup_passes_the_check() {
 }
 
 fn robots(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_joulepath")).arg("robots").args(args).output().unwrap()
-}
-
-fn stdout(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).unwrap()
+    command::joulepath(&[&["robots"], args].concat())
 }
 
 #[test]
 fn every_known_robot_passes_the_check() {
     let output = robots(&["check", "--format", "json"]);
     assert_eq!(output.status.code(), Some(0));
-    let found: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let found = parsed(&output);
     assert!(found["passed"].as_u64().unwrap() >= 60);
     let all = found["robots"].as_array().unwrap();
     assert!(all.iter().all(|robot| robot["sound"] == true));
-    let of = |name: &str| all.iter().find(|robot| robot["name"] == name).unwrap();
-    assert_eq!(of("IRB1600-10/1.45")["lacks"]["optimize"], serde_json::json!([]));
+    let entry = |name: &str| all.iter().find(|robot| robot["name"] == name).unwrap();
+    assert_eq!(entry("IRB1600-10/1.45")["lacks"]["optimize"], serde_json::json!([]));
     // Missing data are estimated; RAPID has six axes.
-    assert_eq!(of("IRB52-7/1.2")["lacks"]["optimize"], serde_json::json!([]));
-    let lacks = &of("IRB14000 left")["lacks"]["simulate"];
+    assert_eq!(entry("IRB52-7/1.2")["lacks"]["optimize"], serde_json::json!([]));
+    let lacks = &entry("IRB14000 left")["lacks"]["simulate"];
     assert!(!lacks.as_array().unwrap().is_empty(), "{lacks}");
 }
 
 #[test]
-fn each_figure_is_shown_with_how_well_it_is_known() {
+fn show_prints_each_value_with_its_interval() {
     let output = robots(&["show", "IRB2600-20/1.65", "--format", "json"]);
-    let found: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let found = parsed(&output);
     let figures = found["figures"].as_array().unwrap();
     for figure in figures {
         let bound = |i: usize| figure["interval"][i].as_f64().unwrap();
@@ -500,17 +497,17 @@ fn imported_robots_can_be_used_and_extended() {
 }
 
 #[test]
-fn wrong_files_end_with_2_and_one_message() {
+fn wrong_files_give_exit_code_2_and_one_message() {
     let folder = tempfile::tempdir().unwrap();
-    let write = |name: &str, text: &str| {
-        let path = folder.path().join(name);
-        fs::write(&path, text).unwrap();
-        path.display().to_string()
-    };
-    let urdf = write("arm.urdf", &arm().replace("value=\"2\"", "value=\"-2\""));
-    let cut = write("MOC.cfg", &configuration()[..700]);
-    let unit = write("unit.toml", "extends = \"IRB140\"\n[limits]\ntcp_speed_mm = 250\n");
-    let key = write("key.toml", "extends = \"IRB140\"\n[limits]\nvelocity = [\"200 deg/s\"]\n");
+    let urdf = written(&folder, "arm.urdf", arm().replace("value=\"2\"", "value=\"-2\""));
+    let cut = written(&folder, "MOC.cfg", &configuration()[..700]);
+    let unit =
+        written(&folder, "unit.toml", "extends = \"IRB140\"\n[limits]\ntcp_speed_mm = 250\n");
+    let key = written(
+        &folder,
+        "key.toml",
+        "extends = \"IRB140\"\n[limits]\nvelocity = [\"200 deg/s\"]\n",
+    );
     for args in [
         ["check", &urdf],
         ["import", &urdf],
@@ -525,7 +522,7 @@ fn wrong_files_end_with_2_and_one_message() {
     ] {
         let output = robots(&args);
         assert_eq!(output.status.code(), Some(2), "{args:?}");
-        let message = String::from_utf8(output.stderr).unwrap();
+        let message = stderr(&output);
         assert_eq!(message.trim_end().lines().count(), 1, "{message}");
         assert!(message.starts_with("error: ") && output.stdout.is_empty(), "{message}");
     }

@@ -66,7 +66,7 @@ fn program(statements: &str) -> Vec<u8> {
 }
 
 #[test]
-fn what_is_nested_too_deeply_is_one_error() {
+fn too_deep_nesting_causes_one_error() {
     let many = 100_000;
     let nested = [
         format!("x := {}1{};", "(".repeat(many), ")".repeat(many)),
@@ -122,7 +122,7 @@ fn nesting_up_to_the_limit_is_read() {
 
 /// The number of steps per token must not grow with the length of inputs that require look-ahead.
 #[test]
-fn work_is_linear() {
+fn the_work_of_the_parser_is_linear() {
     let pieces = [
         "x := 1;\n",
         "IF a ",

@@ -3,11 +3,11 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
-use std::f64::consts::TAU;
+mod arms;
 
+use arms::{pose_distance, same_angles};
 use joulepath::arm::kinematics::{fk, ik_all, radical_inverse};
 use joulepath::arm::robot::{Model, find, from_toml};
-use nalgebra::Isometry3;
 
 /// Tolerance of angles \[rad\].
 const SAME_ANGLE: f64 = 1e-5;
@@ -26,17 +26,6 @@ const THREE_PARALLEL: &str = "name = \"three parallel\"\n\
     [kinematics.flange]\norigin = [0, 0.0922, 0]\nrpy = [-1.5707963267948966, 0, 0]\n\
     [limits]\nposition = [[-3,3],[-3,3],[-3,3],[-3,3],[-3,3],[-3,3]]\n";
 
-fn same(a: &[f64; 6], b: &[f64; 6]) -> bool {
-    a.iter().zip(b).all(|(a, b)| {
-        let d = (a - b).rem_euclid(TAU);
-        d.min(TAU - d) < SAME_ANGLE
-    })
-}
-
-fn distance(a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
-    (a.translation.vector - b.translation.vector).norm().max(a.rotation.angle_to(&b.rotation))
-}
-
 /// The `n`-th joint angles of an even distribution in the ranges.
 fn joints(model: &Model, n: u32) -> [f64; 6] {
     std::array::from_fn(|i| {
@@ -53,10 +42,13 @@ fn missed(model: &Model, count: u32) -> usize {
         let pose = fk(model, &q);
         let found = ik_all(model, &pose).unwrap_or_default();
         for (i, solution) in found.iter().enumerate() {
-            assert!(distance(&fk(model, solution), &pose) < SAME_POSE, "{solution:?}");
-            assert!(!found[..i].iter().any(|other| same(other, solution)), "{found:?}");
+            assert!(pose_distance(&fk(model, solution), &pose) < SAME_POSE, "{solution:?}");
+            assert!(
+                !found[..i].iter().any(|other| same_angles(other, solution, SAME_ANGLE)),
+                "{found:?}"
+            );
         }
-        missed += usize::from(!found.iter().any(|solution| same(solution, &q)));
+        missed += usize::from(!found.iter().any(|solution| same_angles(solution, &q, SAME_ANGLE)));
     }
     missed
 }

@@ -8,14 +8,15 @@
 mod controller_runs;
 #[path = "shared_data/diagnosis.rs"]
 mod diagnosis;
+#[path = "support/measurements.rs"]
+mod measurements;
 #[path = "support/real_logs.rs"]
 mod real_logs;
-
-use std::fs;
-use std::path::Path;
+mod support;
 
 use joulepath::arm::kinematics::{Conf, conf_of, fk, ik_all, ik_conf};
 use joulepath::arm::robot::{find, from_toml, import_urdf};
+use measurements::shared;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 
 /// Median distance of the forward kinematics from the target \[m\]: the nominal
@@ -24,17 +25,6 @@ const VIRTUAL_MEDIAN: f64 = 0.05e-3;
 const REAL_MEDIAN: f64 = 0.15e-3;
 /// Largest difference of a logged joint from the inverse kinematics \[rad\].
 const JOINT: f64 = 1e-3;
-
-/// The file in the folder of measurements next to the crate, if it exists.
-fn shared(path: &str) -> Option<String> {
-    let full = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(path);
-    if let Ok(text) = fs::read_to_string(&full) {
-        return Some(text);
-    }
-    assert!(std::env::var("CI").as_deref() != Ok("true"), "{} is missing", full.display());
-    eprintln!("skipped: {} is missing", full.display());
-    None
-}
 
 fn pose(trans_mm: [f64; 3], wxyz: [f64; 4]) -> Isometry3<f64> {
     let [w, x, y, z] = wxyz;
@@ -71,13 +61,17 @@ fn rows(text: &str) -> Vec<Row> {
         .collect()
 }
 
+fn numbers(value: &serde_json::Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+}
+
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values[values.len() / 2]
 }
 
 #[test]
-fn logged_joints_of_an_irb6640() {
+fn logged_joints_of_an_irb6640_agree_with_the_kinematics() {
     let Some(text) = shared("pairs/irb6640_180_255_controller_fine.csv") else { return };
     let model = find("IRB6640-180/2.55").unwrap();
     // The tool of all logged programs.
@@ -88,8 +82,9 @@ fn logged_joints_of_an_irb6640() {
     let miss = |row: &Row| {
         (fk(&model, &row.joints) * tool).translation.vector - row.target.translation.vector
     };
-    let of = |real: bool| rows.iter().filter(|r| r.real == real).map(|r| miss(r).norm()).collect();
-    let (virtual_median, real_median) = (median(of(false)), median(of(true)));
+    let misses =
+        |real: bool| rows.iter().filter(|r| r.real == real).map(|r| miss(r).norm()).collect();
+    let (virtual_median, real_median) = (median(misses(false)), median(misses(true)));
     eprintln!("median: virtual {virtual_median:.2e} m, real {real_median:.2e} m");
     assert!(virtual_median <= VIRTUAL_MEDIAN && real_median <= REAL_MEDIAN);
 
@@ -109,13 +104,10 @@ fn logged_joints_of_an_irb6640() {
 }
 
 #[test]
-fn robotstudio_targets_of_an_irb1600() {
+fn robotstudio_targets_of_an_irb1600_are_reached() {
     let Some(text) = shared("pairs/irb1600_145_robotstudio_targets.json") else { return };
     let model = find("IRB1600-10/1.45").unwrap();
     let document: serde_json::Value = serde_json::from_str(&text).unwrap();
-    let numbers = |value: &serde_json::Value| -> Vec<f64> {
-        value.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
-    };
     for target in document["targets"].as_array().unwrap() {
         let goal = pose(
             numbers(&target["trans_mm"]).try_into().unwrap(),
@@ -134,12 +126,9 @@ fn robotstudio_targets_of_an_irb1600() {
 }
 
 #[test]
-fn single_pairs_of_targets_and_joints() {
+fn single_pairs_of_targets_and_joints_agree_with_the_kinematics() {
     let Some(text) = shared("pairs/single_pairs.json") else { return };
     let document: serde_json::Value = serde_json::from_str(&text).unwrap();
-    let numbers = |value: &serde_json::Value| -> Vec<f64> {
-        value.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
-    };
     for pair in document["pairs"].as_array().unwrap() {
         // The arm of the IRB1600 is the same for every payload.
         let name = pair["robot"].as_str().unwrap().replace("IRB1600-x", "IRB1600-10");

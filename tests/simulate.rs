@@ -2,17 +2,18 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed set-up fails the test")]
 
+mod support;
+
 use std::collections::BTreeMap;
 
 use joulepath::arm::dynamics::{Data, kinetic_energy, potential_energy, torque};
 use joulepath::arm::robot::{Model, find};
-use joulepath::rapid::text::{FileId, SourceFile};
 use joulepath::retime::energy::account;
 use joulepath::retime::motion::timed::TimedMotion;
 use joulepath::retime::motion::timeline::{Run, What};
-use joulepath::retime::motion::{Options, Simulation, simulate};
+use joulepath::retime::motion::{Options, Simulation};
 use joulepath::retime::path::PieceKind;
-use joulepath::tool::retrofit::{Source, read_program};
+use support::{irb1600, program};
 
 /// A home position and targets in front of an IRB1600, with the tool pointing down.
 const DATA: &str = "CONST jointtarget home:=[[0,0,0,0,60,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
@@ -26,18 +27,11 @@ VAR num endless:=1;
 VAR bool late:=FALSE;
 ";
 
-fn irb1600() -> Model {
-    find("IRB1600-10/1.45").unwrap()
-}
-
 fn run_with(model: &Model, body: &str, options: &Options) -> Simulation {
     let text = format!(
         "MODULE M\n{DATA}PROC main()\nConfL\\Off;\nConfJ\\Off;\n{body}\nENDPROC\nENDMODULE"
     );
-    let file = SourceFile::new(FileId(0), "M.mod".into(), text.into_bytes());
-    let files = [Source { file, relative: "M.mod".into() }];
-    let (program, entry) = read_program(&files, "main").unwrap();
-    simulate(&program, entry, model, options)
+    support::simulated(model, &program(text), options)
 }
 
 fn simulated(body: &str) -> Simulation {
@@ -74,7 +68,7 @@ fn zone_size(body: &str) -> f64 {
 const LENGTH: f64 = 1e-9;
 
 #[test]
-fn the_smallest_relative_size_decides_about_a_zone() {
+fn the_smallest_relative_size_limits_a_zone() {
     // Example of the manual: a zone of 9 degrees in a rotation of 25 degrees covers 9/25 of the
     // path, although 130 of 300 mm are permitted.
     let zone = "[FALSE,130,130,130,9,130,9]";
@@ -164,7 +158,7 @@ fn accelerations(model: &Model, body: &str) -> [f64; 2] {
 const OVERSHOOT: f64 = 1.03;
 
 #[test]
-fn limits_of_the_acceleration_are_obeyed() {
+fn acceleration_limits_are_kept() {
     let body = |settings: &str, zone: &str| {
         format!(
             "MoveJ a,v1000,fine,tool0;\n{settings}\nMoveL b,v1000,{zone},tool0;\n\
@@ -190,7 +184,7 @@ fn limits_of_the_acceleration_are_obeyed() {
 const LINE: (f64, f64, f64) = (12.5, 0.1, 0.15);
 
 #[test]
-fn a_line_starts_as_measured() {
+fn a_line_accelerates_as_measured() {
     const STEP: f64 = 1e-3;
     let model = find("IRB6640-180/2.55").unwrap();
     let tool = "[TRUE,[[75,0,493.3],[0.965925826,0,0.258819045,0]],[1,[0,0,1],[1,0,0,0],0,0,0]]";
@@ -260,8 +254,8 @@ fn energy_is_balanced_in_every_move() {
                 let mut power = |t: f64| {
                     let s = run.at(t);
                     let tau = torque(&model, &mut data, &run.load, &s.q, &s.qd, &s.qdd);
-                    let of = |t: &[f64]| s.qd.iter().zip(t).map(|(v, t)| v * t).sum::<f64>();
-                    [of(&tau.rigid), of(&tau.friction)]
+                    let power_of = |t: &[f64]| s.qd.iter().zip(t).map(|(v, t)| v * t).sum::<f64>();
+                    [power_of(&tau.rigid), power_of(&tau.friction)]
                 };
                 let steps = ((to - from) / 1e-4).ceil().max(1.0) as usize;
                 let h = (to - from) / steps as f64;
@@ -288,7 +282,7 @@ fn energy_is_balanced_in_every_move() {
 }
 
 #[test]
-fn joules_and_seconds_of_the_moves_and_waits_are_those_of_the_cycle() {
+fn energies_and_durations_of_events_add_up_to_the_cycle() {
     let model = irb1600();
     let simulation = simulated(
         "MoveJ a,v1000,fine,tool0;\nWaitTime 0.5;\nMoveL b,v500,z30,tool0;\nMoveL c,v1000,fine,tool0;",
@@ -309,7 +303,7 @@ fn a_wait_takes_the_settling_of_the_stop_before_it() {
 }
 
 #[test]
-fn what_depends_on_inputs_is_told_with_both_ways() {
+fn branches_that_depend_on_inputs_are_reported() {
     let body = "MoveJ a,v1000,fine,tool0;\nIF diPart=1 THEN\nMoveL b,v500,fine,tool0;\n\
                 ELSE\nMoveL c,v500,fine,tool0;\nMoveL b,v500,fine,tool0;\nENDIF";
     let low = simulated(body);
@@ -325,7 +319,7 @@ fn what_depends_on_inputs_is_told_with_both_ways() {
 }
 
 #[test]
-fn passes_of_the_loop_that_never_ends() {
+fn the_passes_of_an_endless_loop_can_be_chosen() {
     let body = "MoveJ a,v1000,fine,tool0;\nWHILE TRUE DO\nMoveL b,v500,fine,tool0;\n\
                 MoveL a,v500,fine,tool0;\nENDWHILE";
     let moves = |passes: Option<u32>| {
@@ -336,7 +330,7 @@ fn passes_of_the_loop_that_never_ends() {
 }
 
 #[test]
-fn a_program_without_end_is_stopped_and_told() {
+fn an_endless_program_is_stopped_and_reported() {
     let body = "MoveJ a,v1000,fine,tool0;\nWHILE endless=1 DO\nMoveL b,v500,fine,tool0;\n\
                 MoveL a,v500,fine,tool0;\nENDWHILE";
     let options = Options { max_time: Some(20.0), ..Options::default() };
@@ -347,7 +341,7 @@ fn a_program_without_end_is_stopped_and_told() {
 }
 
 #[test]
-fn the_override_slows_everything() {
+fn the_speed_override_prolongs_movements() {
     let time = |speed_override: Option<f64>| {
         let options = Options { speed_override, ..Options::default() };
         let body = "MoveJ a,v1000,fine,tool0;\nMoveL b,v100,fine,tool0;";
@@ -359,7 +353,7 @@ fn the_override_slows_everything() {
 }
 
 #[test]
-fn external_axes_take_their_time() {
+fn movements_of_external_axes_take_time() {
     let simulation = simulated(
         "MoveJ a,v1000,fine,tool0;\nMoveExtJ [[9E9,9E9,9E9,9E9,9E9,9E9],[0,9E9,9E9,9E9,9E9,9E9]],\
          vrot10,fine;\nMoveExtJ [[9E9,9E9,9E9,9E9,9E9,9E9],[30,9E9,9E9,9E9,9E9,9E9]],\
@@ -395,7 +389,7 @@ const TIME: f64 = 1e-9;
 const ONE_MOVE: f64 = 2.0;
 
 #[test]
-fn fly_by_motion_without_end_is_stopped_within_the_instruction() {
+fn endless_fly_by_motion_is_stopped_at_the_time_limit() {
     let loops = [
         "WHILE endless=1 DO\nMoveL b,v500,z10,tool0;\nMoveL a,v500,z10,tool0;\nENDWHILE",
         "FOR i FROM 1 TO 90000 DO\nMoveL b,v500,z10,tool0;\nMoveL a,v500,z10,tool0;\nENDFOR",
@@ -406,8 +400,8 @@ fn fly_by_motion_without_end_is_stopped_within_the_instruction() {
         let simulation = run_with(&irb1600(), &body, &options);
         let cycle = simulation.cycle_s;
         assert!((20.0..20.0 + ONE_MOVE).contains(&cycle), "{cycle}");
-        let told: Vec<&str> = reasons(&simulation);
-        assert!(told.iter().any(|r| r.contains("--max-time")), "{told:?}");
+        let reported: Vec<&str> = reasons(&simulation);
+        assert!(reported.iter().any(|r| r.contains("--max-time")), "{reported:?}");
         let moves: usize = runs(&simulation).iter().map(|run| run.moves.len()).sum();
         assert!((20..60).contains(&moves), "{moves}");
         let last = runs(&simulation).last().unwrap().at(cycle);
@@ -416,7 +410,7 @@ fn fly_by_motion_without_end_is_stopped_within_the_instruction() {
 }
 
 #[test]
-fn the_last_instruction_beyond_the_largest_time_is_told() {
+fn exceeding_the_time_limit_in_the_last_instruction_is_reported() {
     let options = Options { max_time: Some(20.0), ..Options::default() };
     let simulation = run_with(&irb1600(), "MoveJ a,v1000,fine,tool0;\nWaitTime 60;", &options);
     assert!(reasons(&simulation).iter().any(|r| r.contains("--max-time")));
@@ -425,7 +419,7 @@ fn the_last_instruction_beyond_the_largest_time_is_told() {
 }
 
 #[test]
-fn waits_time_out() {
+fn waits_end_at_their_max_time() {
     let start = "MoveAbsJ home,v1000,fine,tool0;\n";
     let wait = |options: &str| format!("{start}WaitDI diPart,1{options};\nIF late WaitTime 9;");
     assert_eq!(waits(&with_input(&wait("\\MaxTime:=2\\TimeFlag:=late"), 5.0)), [2.0, 9.0]);
@@ -437,7 +431,7 @@ fn waits_time_out() {
 }
 
 #[test]
-fn handlers_take_what_times_out() {
+fn error_handlers_receive_timeouts_of_waits() {
     let program = |handler: &str| {
         format!(
             "MoveAbsJ home,v1000,fine,tool0;\nWaitDI diPart,1\\MaxTime:=2;\nWaitTime 9;\nERROR\n\
@@ -474,18 +468,21 @@ fn stop_points_wait_for_their_condition() {
 }
 
 #[test]
-fn a_test_on_an_input_tells_its_other_ways() {
+fn other_branches_of_a_test_on_an_input_are_reported() {
     let body = "MoveJ a,v1000,fine,tool0;\nTEST giPart\nCASE 1:\nMoveL b,v500,fine,tool0;\n\
                 CASE 3,4:\nMoveL c,v500,fine,tool0;\nMoveL b,v500,fine,tool0;\nENDTEST";
     let zero = simulated(body);
     assert_eq!(runs(&zero).len(), 1);
-    let told = reasons(&zero).join("\n");
-    assert!(told.contains("2 other branches (3 instructions)"), "{told}");
-    assert!(told.contains("--assume giPart"), "{told}");
+    let reported = reasons(&zero).join("\n");
+    assert!(reported.contains("2 other branches (3 instructions)"), "{reported}");
+    assert!(reported.contains("--assume giPart"), "{reported}");
     // Also through a variable.
     let body_of = |value: &str| body.replace("TEST giPart", &format!("n:={value};\nTEST n"));
-    let told = reasons(&simulated(&body_of("giPart+0"))).join("\n");
-    assert!(told.contains("2 other branches") && told.contains("--assume giPart"), "{told}");
+    let reported = reasons(&simulated(&body_of("giPart+0"))).join("\n");
+    assert!(
+        reported.contains("2 other branches") && reported.contains("--assume giPart"),
+        "{reported}"
+    );
     assert!(reasons(&simulated(&body_of("0"))).is_empty());
     let levels = BTreeMap::from([("gipart".to_owned(), 3.0)]);
     let three = run_with(&irb1600(), body, &Options { levels, ..Options::default() });
@@ -512,8 +509,11 @@ fn loops_that_poll_an_input_are_waits_for_it() {
         let unknown = simulated(&body);
         assert_eq!(runs(&unknown).len(), 1, "{poll}: {:?}", reasons(&unknown));
         assert!(waits(&unknown).len() <= 3, "{poll}: {:?}", waits(&unknown));
-        let told = reasons(&unknown);
-        assert!(told.iter().any(|r| r.contains("--input diPart=SECONDS")), "{poll}: {told:?}");
+        let reported = reasons(&unknown);
+        assert!(
+            reported.iter().any(|r| r.contains("--input diPart=SECONDS")),
+            "{poll}: {reported:?}"
+        );
         let known = with_input(&body, 5.0);
         let sum: f64 = waits(&known).iter().sum();
         // The pass that detects the input may add its duration.
@@ -532,16 +532,16 @@ fn a_counted_loop_gives_up_before_the_input_comes() {
 }
 
 #[test]
-fn loops_that_move_until_an_input_comes_move_so_long() {
+fn loops_move_until_their_input_is_set() {
     for body in [
         "again:\nMoveL b,v500,z10,tool0;\nMoveL a,v500,fine,tool0;\nIF diPart=0 GOTO again;",
         "WHILE diPart=0 DO\nMoveL b,v500,z10,tool0;\nMoveL a,v500,fine,tool0;\nENDWHILE",
     ] {
         let body = format!("MoveJ a,v1000,fine,tool0;\n{body}\nWaitTime 1;");
         let unknown = simulated(&body);
-        let told = reasons(&unknown);
-        assert_eq!(runs(&unknown).len(), 2, "{told:?}");
-        assert!(told.iter().any(|r| r.contains("the first pass")), "{told:?}");
+        let reported = reasons(&unknown);
+        assert_eq!(runs(&unknown).len(), 2, "{reported:?}");
+        assert!(reported.iter().any(|r| r.contains("the first pass")), "{reported:?}");
         assert_eq!(waits(&unknown), [1.0]);
         let known = with_input(&body, 10.0);
         let cycle = known.cycle_s - 1.0;
@@ -550,7 +550,7 @@ fn loops_that_move_until_an_input_comes_move_so_long() {
 }
 
 #[test]
-fn settings_that_the_controller_refuses_or_that_are_not_simulated_are_told() {
+fn refused_or_unsimulated_settings_are_reported() {
     for (setting, what) in [
         ("VelSet 0,5000", "stops with an error"),
         ("VelSet 250,5000", "stops with an error"),
@@ -564,15 +564,15 @@ fn settings_that_the_controller_refuses_or_that_are_not_simulated_are_told() {
     ] {
         let body = format!("MoveJ a,v1000,fine,tool0;\n{setting};\nMoveL b,v500,fine,tool0;");
         let simulation = simulated(&body);
-        let told = reasons(&simulation);
-        assert!(told.len() == 1 && told[0].contains(what), "{setting}: {told:?}");
+        let reported = reasons(&simulation);
+        assert!(reported.len() == 1 && reported[0].contains(what), "{setting}: {reported:?}");
         assert_eq!(runs(&simulation).len(), 2);
     }
     assert!(reasons(&simulated("CirPathMode\\PathFrame;\nSoftDeact;")).is_empty());
 }
 
 #[test]
-fn external_axes_have_speeds_of_their_own() {
+fn external_axes_move_with_their_own_speeds() {
     let to = |x: f64, speed: &str| {
         format!("MoveExtJ [[9E9,9E9,9E9,9E9,9E9,9E9],[{x},9E9,9E9,9E9,9E9,9E9]],{speed},fine;\n")
     };
@@ -612,7 +612,7 @@ fn logic_runs_during_concurrent_movements() {
 }
 
 #[test]
-fn a_wait_for_several_inputs_ends_with_the_one_that_decides() {
+fn a_wait_for_several_inputs_ends_with_the_decisive_one() {
     let inputs = BTreeMap::from([("di3".to_owned(), 4.0), ("di4".to_owned(), 5.5)]);
     let ends = |wait: &str| {
         let options = Options { inputs: inputs.clone(), ..Options::default() };
@@ -631,10 +631,10 @@ fn a_wait_for_several_inputs_ends_with_the_one_that_decides() {
 
 /// An array that exceeds any memory causes a message and is not allocated.
 #[test]
-fn arrays_beyond_all_memory_are_not_built() {
+fn arrays_larger_than_memory_are_not_allocated() {
     let body = "VAR num all{10000,10000,10000};\nall{1,1,1}:=1;\nMoveJ a,v1000,fine,tool0;\n\
                 MoveJ b,[all{1,1,2}+100,500,5000,1000],fine,tool0;";
     let simulation = simulated(body);
-    let told = reasons(&simulation);
-    assert!(told.iter().any(|reason| reason.contains("too large")), "{told:?}");
+    let reported = reasons(&simulation);
+    assert!(reported.iter().any(|reason| reason.contains("too large")), "{reported:?}");
 }

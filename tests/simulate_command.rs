@@ -2,35 +2,22 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed set-up fails the test")]
 
+mod command;
+
 use std::fs;
-use std::process::{Command, Output};
 
+use command::{json, module, number, refused, run};
 use serde_json::Value;
-
-fn joulepath(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_joulepath"))
-        .args(args)
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .output()
-        .unwrap()
-}
 
 const ROBOT: [&str; 2] = ["--robot", "IRB1600-10/1.45"];
 
-fn json(args: &[&str]) -> Value {
-    let output = joulepath(args);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
-
 #[test]
-fn the_report_is_one_page_with_everything_in_it() {
+fn the_report_is_one_self_contained_page() {
     let folder = tempfile::tempdir().unwrap();
     let page = folder.path().join("cycle.html");
     let path = page.to_str().unwrap();
     let [robot, name] = ROBOT;
-    let output = joulepath(&["simulate", "fixtures/hard/waits.mod", robot, name, "--report", path]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    run(&["simulate", "fixtures/hard/waits.mod", robot, name, "--report", path]);
     let html = fs::read_to_string(page).unwrap();
     for part in [
         "Cycle by instruction",
@@ -63,18 +50,12 @@ fn wrong_options_name_the_way_out() {
         ("--start", "0,0,0,0,900,0", "joint 5"),
     ] {
         let given = format!("{option}={value}");
-        let arguments = [&program[..], &[given.as_str()]].concat();
-        let output = joulepath(&arguments);
-        assert_eq!(output.status.code(), Some(2), "{option}");
-        let message = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(message.contains(hint), "{option}: {message}");
+        refused(&[&program[..], &[&given]].concat(), hint);
     }
 }
 
 #[test]
-fn levels_and_passes_change_what_runs() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("m.mod");
+fn levels_and_passes_change_the_simulated_cycle() {
     let none = "[9E9,9E9,9E9,9E9,9E9,9E9]";
     let program = format!(
         "MODULE M\nPROC main()\nMoveAbsJ [[0,0,0,0,60,0],{none}],v1000,fine,tool0;\n\
@@ -82,11 +63,10 @@ fn levels_and_passes_change_what_runs() {
          ENDIF\nMoveAbsJ [[0,0,0,0,60,0],{none}],v1000,fine,tool0;\nWaitTime 1;\nENDWHILE\n\
          ENDPROC\nENDMODULE"
     );
-    fs::write(&file, program).unwrap();
-    let path = file.to_str().unwrap();
+    let (_folder, path) = module(program);
     let [robot, name] = ROBOT;
     let moves = |options: &[&str]| {
-        let base = ["simulate", path, robot, name, "--format", "json"];
+        let base = ["simulate", &path, robot, name, "--format", "json"];
         let result = json(&[&base[..], options].concat());
         let places = result["unresolved"].as_array().unwrap().clone();
         (result["moves"].as_array().unwrap().len(), places)
@@ -102,7 +82,7 @@ fn levels_and_passes_change_what_runs() {
 }
 
 #[test]
-fn movements_that_do_more_are_marked_and_waits_have_their_joules() {
+fn movements_with_actions_are_marked_and_energies_add_up() {
     let [robot, name] = ROBOT;
     let result = json(&["simulate", "fixtures/hard/trigger.mod", robot, name, "--format", "json"]);
     let marks: Vec<(&str, &Value)> = result["moves"]
@@ -126,6 +106,6 @@ fn movements_that_do_more_are_marked_and_waits_have_their_joules() {
     let moves = result["moves"].as_array().unwrap().iter();
     let all = moves.chain(result["waits"].as_array().unwrap());
     let sum: f64 = all.map(|part| part["energy_j"].as_f64().unwrap()).sum();
-    let total = result["energy_j"].as_f64().unwrap();
+    let total = number(&result, "/energy_j");
     assert!((sum - total).abs() < 1e-9 * total, "{sum} {total}");
 }

@@ -1,21 +1,16 @@
 //! `standstill` through the binary: the contract of its JSON, and the table of the paper.
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
-use std::process::{Command, Output};
+mod command;
 
+use command::{refused, written};
 use serde_json::Value;
 
 /// Table 3 has joints 2 and 3 in whole watts.
 const PRINTED_W: f64 = 0.5;
 
-fn standstill(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_joulepath")).arg("standstill").args(args).output().unwrap()
-}
-
 fn json(args: &[&str]) -> Value {
-    let output = standstill(&[args, &["--format", "json", "--quiet"]].concat());
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
+    command::json(&[&["standstill"], args, &["--format", "json", "--quiet"]].concat())
 }
 
 fn numbers(value: &Value) -> Vec<f64> {
@@ -23,7 +18,7 @@ fn numbers(value: &Value) -> Vec<f64> {
 }
 
 #[test]
-fn paper_table_3_in_order_and_size() {
+fn holding_powers_agree_with_table_3_of_the_paper() {
     let lines: Vec<Vec<&str>> = include_str!("../fixtures/paper/standstill.csv")
         .lines()
         .skip(1)
@@ -56,7 +51,7 @@ fn paper_table_3_in_order_and_size() {
 }
 
 #[test]
-fn best_pose_is_cheaper_near_and_reachable() {
+fn the_best_nearby_pose_needs_less_power() {
     let result =
         json(&["--robot", "IRB1600-10/1.45", "--within", "10", "--pose", "10,90,-30,20,40,5"]);
     let pose = &result["poses"][0];
@@ -82,7 +77,7 @@ fn best_pose_is_cheaper_near_and_reachable() {
 
 /// Starts from which a local descent does not reach the global minimum.
 #[test]
-fn the_deepest_of_several_valleys_is_found() {
+fn the_global_minimum_of_several_is_found() {
     /// Accepted excess over the best known pose \[W\].
     const MISSED_W: f64 = 0.05;
     for (pose, within, more, known_w) in [
@@ -102,7 +97,7 @@ fn the_deepest_of_several_valleys_is_found() {
 }
 
 #[test]
-fn dwells_of_a_program_have_places() {
+fn dwells_of_a_program_are_listed_with_their_file() {
     let result = json(&["fixtures/pick_place"]);
     let poses = result["poses"].as_array().unwrap();
     let long = poses.iter().find(|pose| pose["duration_s"] == 12.0).unwrap();
@@ -111,7 +106,7 @@ fn dwells_of_a_program_have_places() {
 }
 
 #[test]
-fn what_is_missing_is_said() {
+fn missing_or_wrong_arguments_are_refused() {
     let pose = "0,0,0,0,0,0";
     for (args, way_out) in [
         (vec!["--pose", pose], "--robot NAME"),
@@ -120,10 +115,7 @@ fn what_is_missing_is_said() {
         (vec!["--robot", "IRB1600-10/1.45", "--pose", "1e300,0,0,0,0,0"], "at 1.000e300 deg"),
         (vec!["--robot", "IRB1600-10/1.45"], "--pose DEG"),
     ] {
-        let output = standstill(&args);
-        let message = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(2), "{args:?}");
-        assert!(message.contains(way_out), "{message}");
+        refused(&[&["standstill"], &args[..]].concat(), way_out);
     }
 }
 
@@ -131,14 +123,14 @@ fn what_is_missing_is_said() {
 #[test]
 fn an_unknown_arm_has_estimates() {
     let folder = tempfile::tempdir().unwrap();
-    let bare = folder.path().join("bare.toml");
-    std::fs::write(&bare, "extends = \"IRB120-3/0.58\"\nname = \"another\"\n").unwrap();
-    let result = json(&["--robot", bare.to_str().unwrap(), "--pose", "0,0,0,0,0,0"]);
+    let text = "extends = \"IRB120-3/0.58\"\nname = \"another\"\n";
+    let bare = written(&folder, "bare.toml", text);
+    let result = json(&["--robot", &bare, "--pose", "0,0,0,0,0,0"]);
     assert!(result["poses"][0]["holding_w"].as_f64().unwrap() > 0.0, "{result}");
 }
 
 #[test]
-fn what_an_interval_comes_from_is_named() {
+fn intervals_list_the_estimates_that_cause_them() {
     let value = json(&["--robot", "IRB2600-20/1.65", "--pose", "0,30,0,0,30,0"]);
     let pose = &value["poses"][0];
     let parts = pose["estimated"].as_array().unwrap();

@@ -2,11 +2,14 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
-use std::fs;
-use std::process::Command;
+mod arms;
+mod command;
 
+use std::fs;
+
+use command::{IRB1600, joulepath, module, run, stderr, stdout};
 use joulepath::arm::kinematics::{Tcp, fk, jacobian};
-use joulepath::arm::robot::{Model, find, from_toml};
+use joulepath::arm::robot::{Model, find};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 
@@ -25,10 +28,10 @@ fn stationary() -> Isometry3<f64> {
     )
 }
 
+/// A serial arm, and one with rods.
 fn robots() -> [Model; 2] {
-    let rods = "extends = \"IRB1600-10/1.45\"\nname = \"rods\"\n\
-                [kinematics]\ncoupling = \"parallelogram\"\n";
-    [find("IRB1600-10/1.45").unwrap(), from_toml("rods.toml", rods).unwrap()]
+    let [serial, _, rods, ..] = arms::robots();
+    [serial, rods]
 }
 
 fn difference(a: &Isometry3<f64>, b: &Isometry3<f64>) -> [Vector3<f64>; 2] {
@@ -39,7 +42,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..Default::default() })]
 
     #[test]
-    fn either_side_sees_the_other(q in prop::array::uniform6(-2.5..2.5)) {
+    fn pose_and_flange_are_inverse_for_held_and_stationary_tools(q in prop::array::uniform6(-2.5..2.5)) {
         let flange = fk(&robots()[0], &q);
         for tcp in [Tcp::Held(stationary()), Tcp::Stationary(stationary())] {
             let [linear, angular] = difference(&tcp.flange(&tcp.pose(&flange)), &flange);
@@ -52,7 +55,7 @@ proptest! {
     }
 
     #[test]
-    fn jacobian_is_the_change_of_pose(
+    fn jacobian_is_the_derivative_of_the_pose(
         q in prop::array::uniform6(-2.5..2.5),
         qd in prop::array::uniform6(-3.0..3.0),
         which in 0usize..2,
@@ -93,18 +96,12 @@ const GLUE: &str = "MODULE M\n\
     ENDPROC\nENDMODULE\n";
 
 #[test]
-fn the_work_moves_along_the_line() {
-    let folder = tempfile::tempdir().unwrap();
-    let (program, motion) = (folder.path().join("m.mod"), folder.path().join("motion.csv"));
-    fs::write(&program, GLUE).unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
-        .args(["simulate", program.to_str().unwrap(), "--robot", "IRB1600-10/1.45"])
-        .args(["--start", "0,0,0,0,30,0", "--trajectory", motion.to_str().unwrap()])
-        .output()
-        .unwrap();
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.success(), "{said}");
-    assert!(!said.contains("not simulated"), "{said}");
+fn the_workpiece_moves_along_the_line() {
+    let (folder, program) = module(GLUE);
+    let motion = folder.path().join("motion.csv");
+    let args = ["simulate", &program, "--robot", IRB1600, "--start", "0,0,0,0,30,0"];
+    let message = stderr(&run(&[&args[..], &["--trajectory", motion.to_str().unwrap()]].concat()));
+    assert!(!message.contains("not simulated"), "{message}");
 
     let model = find("IRB1600-10/1.45").unwrap();
     let tool = Isometry3::translation(0.9, 0.1, 0.7);
@@ -139,14 +136,9 @@ fn the_work_moves_along_the_line() {
 }
 
 #[test]
-fn what_both_or_neither_hold_is_refused() {
-    let folder = tempfile::tempdir().unwrap();
-    let program = folder.path().join("m.mod");
-    fs::write(&program, GLUE.replace("[TRUE,TRUE", "[FALSE,TRUE")).unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
-        .args(["simulate", program.to_str().unwrap(), "--robot", "IRB1600-10/1.45"])
-        .output()
-        .unwrap();
-    let said = String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr);
-    assert!(said.contains("the robot holds neither"), "{said}");
+fn a_robot_that_holds_neither_tool_nor_work_object_is_reported() {
+    let (_folder, program) = module(GLUE.replace("[TRUE,TRUE", "[FALSE,TRUE"));
+    let output = joulepath(&["simulate", &program, "--robot", IRB1600]);
+    let message = stdout(&output) + &stderr(&output);
+    assert!(message.contains("the robot holds neither"), "{message}");
 }

@@ -2,16 +2,17 @@
 //! controllers with another behaviour. These motions are computed independently from the text.
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
+mod command;
+
 use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::fs;
-use std::process::{Command, Output};
 
+use command::{IRB1600 as ROBOT, joulepath, json, parsed, refused, run, written};
 use joulepath::rapid::syntax;
 use serde_json::Value;
 use tempfile::TempDir;
 
-const ROBOT: &str = "IRB1600-10/1.45";
 const TESTS: usize = 4;
 /// Interval of the logs [s], and the pause around each test.
 const STEP: f64 = 0.004;
@@ -20,15 +21,9 @@ const REST: f64 = 0.2;
 const LAG: f64 = 0.01;
 const NOISE: f64 = 0.02;
 
-fn joulepath(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_joulepath")).args(args).output().unwrap()
-}
-
-fn written() -> TempDir {
+fn test_program() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
-    let output =
-        joulepath(&["streamtest", "--robot", ROBOT, "--out", folder.path().to_str().unwrap()]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    run(&["streamtest", "--robot", ROBOT, "--out", folder.path().to_str().unwrap()]);
     folder
 }
 
@@ -123,7 +118,7 @@ fn b_spline(start: [f64; 6], points: &[Timed]) -> impl Fn(f64) -> [f64; 6] + use
 }
 
 /// The robot stops at each point: corner zones have no effect.
-fn visiting(start: [f64; 6], points: &[Timed]) -> impl Fn(f64) -> [f64; 6] + use<> {
+fn with_stops(start: [f64; 6], points: &[Timed]) -> impl Fn(f64) -> [f64; 6] + use<> {
     let points = points.to_vec();
     move |t: f64| {
         let (mut from, mut t) = (start, t.max(0.0));
@@ -148,13 +143,10 @@ fn duration(points: &[Timed]) -> f64 {
 
 /// The judgement of a log, with the exit code.
 fn judged(folder: &TempDir, log: &str) -> (Value, Option<i32>) {
-    let path = folder.path().join("log.csv");
-    fs::write(&path, log).unwrap();
-    let path = path.to_str().unwrap();
+    let path = written(folder, "log.csv", log);
     let output =
-        joulepath(&["streamtest", "--robot", ROBOT, "--log", path, "--format", "json", "-q"]);
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    (serde_json::from_slice(&output.stdout).expect(&stderr), output.status.code())
+        joulepath(&["streamtest", "--robot", ROBOT, "--log", &path, "--format", "json", "-q"]);
+    (parsed(&output), output.status.code())
 }
 
 fn findings(found: &Value) -> Vec<&str> {
@@ -163,8 +155,8 @@ fn findings(found: &Value) -> Vec<&str> {
 }
 
 #[test]
-fn the_modules_are_rapid_and_run() {
-    let folder = written();
+fn the_modules_are_valid_rapid_and_run() {
+    let folder = test_program();
     for name in ["JoulepathTest.mod", "JoulepathTestLogger.mod"] {
         let parse = syntax::parse(&fs::read(folder.path().join(name)).unwrap());
         assert!(parse.errors.is_empty(), "{name}: {:?}", parse.errors);
@@ -173,8 +165,7 @@ fn the_modules_are_rapid_and_run() {
     let module = folder.path().join("JoulepathTest.mod");
     let module = module.to_str().unwrap();
     let args = ["simulate", module, "--entry", "jpTestRun", "--robot", ROBOT, "--format", "json"];
-    let output = joulepath(&args);
-    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let found = json(&args);
     assert_eq!(found["unresolved"].as_array().map(Vec::len), Some(0), "{found}");
     let tests: f64 = points(&folder).iter().map(|points| duration(points)).sum();
     let waits = 0.9 * TESTS as f64;
@@ -183,8 +174,8 @@ fn the_modules_are_rapid_and_run() {
 }
 
 #[test]
-fn the_predicted_log_and_a_robot_with_lag_and_noise_are_as_expected() {
-    let folder = written();
+fn the_predicted_log_and_one_with_lag_and_noise_pass() {
+    let folder = test_program();
     let own = fs::read_to_string(folder.path().join("streamtest.csv")).unwrap();
     assert_eq!(judged(&folder, &own).1, Some(0));
     let motions: Vec<_> = points(&folder)
@@ -201,12 +192,12 @@ fn the_predicted_log_and_a_robot_with_lag_and_noise_are_as_expected() {
 }
 
 #[test]
-fn a_controller_that_visits_the_points_is_told() {
-    let folder = written();
+fn a_controller_that_visits_the_points_is_recognised() {
+    let folder = test_program();
     let motions: Vec<_> = points(&folder)
         .iter()
         .map(|points| {
-            let motion: Motion = Box::new(visiting(START, points));
+            let motion: Motion = Box::new(with_stops(START, points));
             (motion, duration(points))
         })
         .collect();
@@ -218,13 +209,13 @@ fn a_controller_that_visits_the_points_is_told() {
 }
 
 #[test]
-fn a_controller_that_is_slower_or_cuts_corners_otherwise_is_not_as_expected() {
-    let folder = written();
+fn a_slower_or_wider_motion_is_not_as_expected() {
+    let folder = test_program();
     for (slower, wider) in [(1.05, 1.0), (1.0, 1.4)] {
         let motions: Vec<_> = points(&folder)
             .iter()
             .map(|points| {
-                let (law, visits) = (b_spline(START, points), visiting(START, points));
+                let (law, visits) = (b_spline(START, points), with_stops(START, points));
                 let motion: Motion = Box::new(move |t| {
                     let (a, b) = (law(t / slower), visits(t / slower));
                     std::array::from_fn(|j| b[j] + wider * (a[j] - b[j]))
@@ -242,26 +233,23 @@ fn a_controller_that_is_slower_or_cuts_corners_otherwise_is_not_as_expected() {
 
 #[test]
 fn unusable_input_is_refused_with_the_way_out() {
-    let folder = written();
+    let folder = test_program();
     let log = folder.path().join("streamtest.csv");
     let log = log.to_str().unwrap();
-    let told = |args: &[&str], words: &str| {
-        let output = joulepath(&[&["streamtest"], args].concat());
-        assert_eq!(output.status.code(), Some(2), "{args:?}");
-        let stderr = String::from_utf8_lossy(&output.stderr);
-        assert!(stderr.contains(words), "{stderr}");
+    let is_refused = |args: &[&str], words: &str| {
+        refused(&[&["streamtest"], args].concat(), words);
     };
-    told(&["--robot", ROBOT], "--out");
-    told(&["--robot", ROBOT, "--log", log, "--start", "20,0,0,0,30,0"], "--start");
-    told(&["--robot", ROBOT, "--out", "x", "--start", "0,0,0,0,300,0"], "--start");
-    told(&["--robot", ROBOT, "--log", "nowhere.csv"], "nowhere.csv");
+    is_refused(&["--robot", ROBOT], "--out");
+    is_refused(&["--robot", ROBOT, "--log", log, "--start", "20,0,0,0,30,0"], "--start");
+    is_refused(&["--robot", ROBOT, "--out", "x", "--start", "0,0,0,0,300,0"], "--start");
+    is_refused(&["--robot", ROBOT, "--log", "nowhere.csv"], "nowhere.csv");
     // A test below the resolution of a log would pass with any controller.
-    told(&["--robot", ROBOT, "--out", "x", "--start", "179.5,0,0,0,30,0"], "another --start");
+    is_refused(&["--robot", ROBOT, "--out", "x", "--start", "179.5,0,0,0,30,0"], "another --start");
     let text = fs::read_to_string(log).unwrap();
     let sparse: Vec<&str> = text.lines().step_by(10).collect();
     fs::write(log, sparse.join("\n")).unwrap();
-    told(&["--robot", ROBOT, "--log", log], "0.02 s apart");
+    is_refused(&["--robot", ROBOT, "--log", log], "0.02 s apart");
     let text = text.replace("cmd", "remark");
     fs::write(log, text).unwrap();
-    told(&["--robot", ROBOT, "--log", log], "cmd");
+    is_refused(&["--robot", ROBOT, "--log", log], "cmd");
 }

@@ -51,7 +51,7 @@ fn rendered(fixture: &Fixture) -> String {
 }
 
 #[test]
-fn what_controllers_accept_is_read_without_errors() {
+fn valid_fixtures_are_read_without_errors() {
     for fixture in read("ok") {
         assert_eq!(rendered(&fixture), "", "{} has errors", fixture.name);
         let tree = syntax::dump(&fixture.parse.tree, &fixture.source.bytes);
@@ -69,7 +69,7 @@ fn what_controllers_accept_is_read_without_errors() {
 }
 
 #[test]
-fn each_mistake_is_one_error() {
+fn each_mistake_causes_one_error() {
     let mut cascades = Vec::new();
     for fixture in read("err") {
         let errors = rendered(&fixture);

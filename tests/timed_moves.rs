@@ -1,21 +1,17 @@
 //! Movements with `\T`, the limiting quantity of a movement, and lines near singularities.
 #![expect(clippy::unwrap_used, reason = "a failed set-up fails the test")]
 
+mod support;
+
 use std::fmt::Write;
 
 use joulepath::arm::dynamics::{Data, torque};
 use joulepath::arm::kinematics::fk;
-use joulepath::arm::robot::{Model, find};
-use joulepath::rapid::text::{FileId, SourceFile};
 use joulepath::retime::motion::timeline::{Run, What};
-use joulepath::retime::motion::{Options, Simulation, simulate};
-use joulepath::tool::retrofit::{Source, read_program};
+use joulepath::retime::motion::{Options, Simulation};
+use support::{irb1600, program, simulated};
 
 const NONE: &str = "[9E9,9E9,9E9,9E9,9E9,9E9]";
-
-fn irb1600() -> Model {
-    find("IRB1600-10/1.45").unwrap()
-}
 
 /// A line to a point in mm with the tool pointing down.
 fn line(point: [f64; 3], speed: &str, zone: &str) -> String {
@@ -29,10 +25,7 @@ fn run(body: &str) -> Simulation {
         "MODULE M\nPROC main()\nMoveAbsJ [[0,0,0,0,60,0],{NONE}],v1000,fine,tool0;\nConfL\\Off;\n\
          ConfJ\\Off;\n{body}ENDPROC\nENDMODULE\n"
     );
-    let file = SourceFile::new(FileId(0), "M.mod".into(), text.into_bytes());
-    let files = [Source { file, relative: "M.mod".into() }];
-    let (program, entry) = read_program(&files, "main").unwrap();
-    simulate(&program, entry, &irb1600(), &Options::default())
+    simulated(&irb1600(), &program(text), &Options::default())
 }
 
 fn runs(simulation: &Simulation) -> impl Iterator<Item = &Run> {
@@ -130,7 +123,7 @@ fn path_acceleration_is_limited_in_small_zones_too() {
 const BESIDE: f64 = 5e-5;
 
 #[test]
-fn wrist_interpolation_takes_a_line_past_the_singularity() {
+fn wrist_interpolation_passes_a_singularity_on_a_line() {
     let target = |y: f64| format!("[[1000,{y},1194.5],[0.707107,0,0.707107,0],[0,0,0,0],{NONE}]");
     let from = format!("MoveL {},v200,fine,tool0;\n", target(300.0));
     let to = format!("MoveL {},v200,fine,tool0;\n", target(-300.0));
@@ -173,7 +166,7 @@ fn a_line_without_configuration_ends_where_it_arrives() {
 }
 
 #[test]
-fn a_joint_that_stands_has_no_friction() {
+fn a_resting_joint_has_no_friction() {
     // In the plane of the arm, axes 1, 4 and 6 are at rest except for rounding.
     let body = line([900., 0., 700.], "v500", "fine") + &line([1000., 0., 900.], "v500", "fine");
     let simulation = run(&body);
@@ -193,7 +186,7 @@ fn a_joint_that_stands_has_no_friction() {
 }
 
 #[test]
-fn at_rest_the_joints_are_exactly_the_same() {
+fn joint_angles_are_exactly_constant_at_rest() {
     let body = line([900., 120., 700.], "v500", "fine")
         + "WaitTime 0.1;\n"
         + &line([1000., -70., 900.], "v500", "fine")
@@ -232,7 +225,7 @@ fn one_sided_path_acceleration_slows_no_more_than_both() {
 const JOINT_SPEED: f64 = 1.01;
 
 #[test]
-fn joints_keep_their_speed_next_to_a_singularity() {
+fn joints_keep_their_speed_limits_near_a_singularity() {
     let model = irb1600();
     let limits = model.limits.velocity.clone().unwrap();
     let target =
@@ -258,7 +251,7 @@ fn joints_keep_their_speed_next_to_a_singularity() {
 }
 
 #[test]
-fn a_very_slow_move_is_no_more_work_than_others() {
+fn a_very_slow_move_is_simulated() {
     let body = line([850., 100., 700.], "v1000", "fine")
         + &line([850., 300., 700.], "v1000\\T:=10000000", "fine");
     let simulation = run(&body);

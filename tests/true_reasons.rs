@@ -2,14 +2,13 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
+mod command;
+
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
+use command::{KNOWN_LIMITS, json, module};
 use serde_json::Value;
-
-/// The robot with known limits.
-const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/known_limits.toml");
 
 const FAR: &str = "[9E9,9E9,9E9,9E9,9E9,9E9]";
 /// Tolerance between two computations of the same energy, J.
@@ -20,15 +19,10 @@ fn optimize(input: &Path, out: &Path) -> Value {
 }
 
 fn optimize_with(input: &Path, out: &Path, args: &[&str]) -> Value {
-    let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
-        .args(["optimize", input.to_str().unwrap(), "--robot", KNOWN, "--allow-faster-joints"])
-        .arg("--inline-targets")
-        .args(args)
-        .args(["--format", "json", "--quiet", "--out", out.to_str().unwrap()])
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let result: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let (input, out) = (input.to_str().unwrap(), out.to_str().unwrap());
+    let robot = ["--robot", KNOWN_LIMITS, "--allow-faster-joints", "--inline-targets"];
+    let form = ["optimize", input, "--out", out, "--format", "json", "--quiet"];
+    let result = json(&[&form[..], &robot, args].concat());
     assert_eq!(result["verification"]["passed"], true, "{result}");
     result
 }
@@ -39,12 +33,10 @@ fn segments(declarations: &str, movements: &[String]) -> Vec<Value> {
 }
 
 fn segments_with(declarations: &str, movements: &[String], args: &[&str]) -> Vec<Value> {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("m.mod");
     let movements = movements.join("\n");
     let text = format!("MODULE M\n{declarations}PROC main()\n{movements}\nENDPROC\nENDMODULE\n");
-    fs::write(&path, text).unwrap();
-    let result = optimize_with(&path, &folder.path().join("out"), args);
+    let (folder, path) = module(text);
+    let result = optimize_with(Path::new(&path), &folder.path().join("out"), args);
     result["segments"].as_array().unwrap().clone()
 }
 
@@ -69,7 +61,7 @@ fn reasons(segments: &[Value]) -> Vec<String> {
 }
 
 #[test]
-fn names_of_rapid_that_the_program_has_otherwise_are_told() {
+fn redefined_names_of_rapid_prevent_streams() {
     // The guard would be true at any position of the robot.
     let abs = "FUNC num Abs(num x)\nRETURN 0;\nENDFUNC\n";
     let zone = "CONST zonedata z200:=[FALSE,1,1,1,1,1,1];\n";
@@ -84,7 +76,7 @@ fn names_of_rapid_that_the_program_has_otherwise_are_told() {
 
 /// RAPID names are case-insensitive.
 #[test]
-fn a_tool_in_other_letters_is_the_same_tool() {
+fn tool_names_are_case_insensitive() {
     let tool = "PERS tooldata tGun:=[TRUE,[[0,0,80],[1,0,0,0]],[2,[0,0,40],[1,0,0,0],0,0,0]];\n";
     let other = tool.replace("tGun", "tOther");
     let through = |last: &str| {
@@ -103,7 +95,7 @@ fn a_tool_in_other_letters_is_the_same_tool() {
 }
 
 #[test]
-fn one_joint_that_turns_far_does_not_leave_its_path() {
+fn a_long_turn_of_one_joint_becomes_a_stream() {
     let turned = |angle: f64| joints([0.0, 0.0, 0.0, 0.0, 30.0, angle], "vmax,fine");
     let movements = [turned(300.0), turned(-300.0), turned(300.0)];
     // This tests the path, not whether it saves energy in nearly every plausible robot.
@@ -112,7 +104,7 @@ fn one_joint_that_turns_far_does_not_leave_its_path() {
 }
 
 #[test]
-fn joints_that_turn_at_the_same_place_make_no_double_node() {
+fn simultaneous_reversals_of_joints_do_not_prevent_streams() {
     let movements = [
         joints([0.0, 0.0, 0.0, 0.0, 30.0, 0.0], "v1000,fine"),
         pose("MoveJ", [879.8, 72.6, 453.7], "v1000,fine"),
@@ -127,7 +119,7 @@ fn joints_that_turn_at_the_same_place_make_no_double_node() {
 }
 
 #[test]
-fn short_movements_are_not_said_to_save_what_settling_takes() {
+fn streams_of_short_movements_stay_above_their_bound() {
     let bent = |angle: f64, last: f64| joints([0.0, 0.0, 0.0, 0.0, angle, last], "vmax,fine");
     let movements =
         [bent(30.0, 0.0), bent(30.02, 0.0), bent(30.5, 0.0), bent(31.5, 0.0), bent(31.5, 1.0)];
@@ -141,7 +133,7 @@ fn short_movements_are_not_said_to_save_what_settling_takes() {
 }
 
 #[test]
-fn what_was_left_stays_left() {
+fn a_second_retrofit_changes_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let movements = [
         joints([0.0, 0.0, 0.0, 0.0, 30.0, 0.0], "v1000,fine"),
@@ -169,7 +161,7 @@ fn shifted(offset: &str, rest: &str) -> String {
 }
 
 #[test]
-fn what_changes_is_told_by_a_condition() {
+fn guards_compare_values_that_may_change() {
     let here = format!("CONST robtarget pHere:=[[900,50,900],[0,0,1,0],[0,0,0,0],{FAR}];\n");
     let start = "MoveJ pHere,v1000,fine,tool0;".to_owned();
     let ways = |offset: &str| vec![shifted(offset, "v500,fine"), start.clone()];
@@ -245,12 +237,8 @@ fn the_original_runs_where_a_variable_has_another_value() {
     fs::write(out.join("m.mod"), written.replace("h:=60;", "h:=200;")).unwrap();
     fs::write(&path, program("200")).unwrap();
     let [was, now] = [&path, &out].map(|input| {
-        let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
-            .args(["simulate", input.to_str().unwrap(), "--robot", KNOWN])
-            .args(["--format", "json", "--quiet"])
-            .output()
-            .unwrap();
-        serde_json::from_slice::<Value>(&output.stdout).unwrap()
+        let input = input.to_str().unwrap();
+        json(&["simulate", input, "--robot", KNOWN_LIMITS, "--format", "json", "--quiet"])
     });
     let lines = |result: &Value| -> Vec<f64> {
         let moves = result["moves"].as_array().unwrap();
@@ -261,7 +249,7 @@ fn the_original_runs_where_a_variable_has_another_value() {
 }
 
 #[test]
-fn an_output_on_the_way_leaves_its_run_and_no_other() {
+fn an_early_output_prevents_only_its_own_stream() {
     let (a, b) = (pose("MoveL", [900.0, 50.0, 900.0], "v500,z50"), there_and_back());
     let all = [
         vec![pose("MoveJ", [900.0, 150.0, 900.0], "v1000,fine"), a],
@@ -276,7 +264,7 @@ fn an_output_on_the_way_leaves_its_run_and_no_other() {
 }
 
 #[test]
-fn registers_that_every_controller_has_are_data() {
+fn predefined_registers_may_be_part_of_a_target() {
     let here = format!("CONST robtarget pHere:=[[900,50,900],[0,0,1,0],[0,0,0,0],{FAR}];\n");
     let all = [
         "reg1:=1;",
@@ -293,7 +281,7 @@ fn registers_that_every_controller_has_are_data() {
 }
 
 #[test]
-fn a_first_line_from_a_place_that_is_not_known_ends_where_it_is_told_to() {
+fn a_first_line_from_an_unknown_position_ends_at_its_target() {
     let lines = [[900.0, 50.0, 900.0], [900.0, 150.0, 900.0], [900.0, 50.0, 900.0]];
     let found = segments("", &lines.map(|place| pose("MoveL", place, "v500,fine")));
     assert_eq!(reasons(&found), ["first-movement"], "{found:?}");
@@ -301,7 +289,7 @@ fn a_first_line_from_a_place_that_is_not_known_ends_where_it_is_told_to() {
 
 /// A guard cannot compare the value of an optional argument that a caller may omit.
 #[test]
-fn options_that_the_caller_may_leave_out_are_not_rewritten() {
+fn movements_with_optional_parameters_as_arguments_are_kept() {
     for (option, kind) in
         [("WObj?W", "PERS wobjdata"), ("V?W", "num"), ("T?W", "num"), ("Z?W", "num")]
     {
@@ -315,16 +303,16 @@ fn options_that_the_caller_may_leave_out_are_not_rewritten() {
         for call in ["rGo;".to_owned(), format!("rGo\\W:={given};")] {
             let start = "MoveJ pHere,v1000,fine,tool0;".to_owned();
             let found = segments(&routine, &[start, call.clone()]);
-            let told = reasons(&found);
+            let reported = reasons(&found);
             let own = if option == "T?W" && call != "rGo;" { "timed" } else { "argument" };
-            assert!(told.contains(&own.to_owned()), "{option} {call}: {found:?}");
+            assert!(reported.contains(&own.to_owned()), "{option} {call}: {found:?}");
         }
     }
 }
 
 /// Interrupt routines also write through functions and late-bound names.
 #[test]
-fn what_interrupt_routines_do_by_functions_counts() {
+fn functions_that_interrupt_routines_call_are_considered() {
     let cases = [
         ("nQ:=fWrites();", "meanwhile"),
         ("IF fWrites()=1 THEN\nnQ:=2;\nENDIF", "meanwhile"),
@@ -360,15 +348,15 @@ fn what_interrupt_routines_do_by_functions_counts() {
             "MoveL Offs(pHere,0,90,-90+nS),v500,fine,tool0;",
         ];
         let found = segments(&declared, &movements.map(str::to_owned));
-        let told = reasons(&found);
-        assert_eq!(told.get(1).map_or("", String::as_str), expected, "{statement}: {found:?}");
+        let reported = reasons(&found);
+        assert_eq!(reported.get(1).map_or("", String::as_str), expected, "{statement}: {found:?}");
     }
 }
 
 /// A guard evaluates all arguments before the first movement, and an error in one of them would
 /// occur too early for a caller that handles it.
 #[test]
-fn arguments_that_may_end_in_an_error_stay_where_somebody_handles_it() {
+fn movements_with_arguments_that_may_fail_are_kept_under_an_error_handler() {
     let here = target(50.0);
     for (last, handler, expected) in [
         ("Offs(pHere,0,90,-40/nS)", "ERROR\nTRYNEXT;", true),
@@ -386,8 +374,8 @@ fn arguments_that_may_end_in_an_error_stay_where_somebody_handles_it() {
              MoveL {last},v500,fine,tool0;\n{handler}\nENDPROC\n"
         );
         let movements = ["MoveJ pHere,v1000,fine,tool0;", "rGo;"].map(str::to_owned);
-        let told = reasons(&segments(&declared, &movements));
-        let is_told = told.iter().any(|reason| reason == "handler");
-        assert_eq!(is_told, expected, "{last} {handler}: {told:?}");
+        let reported = reasons(&segments(&declared, &movements));
+        let is_told = reported.iter().any(|reason| reason == "handler");
+        assert_eq!(is_told, expected, "{last} {handler}: {reported:?}");
     }
 }

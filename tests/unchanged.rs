@@ -4,15 +4,15 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
+mod support;
+
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use joulepath::arm::robot::find;
-use joulepath::rapid::text::{FileId, SourceFile, Span};
+use joulepath::rapid::text::Span;
 use joulepath::tool::retrofit::{OutputFile, OutputKind, Retrofit, Settings, Source, retrofit};
+use support::{irb1600, module_paths};
 
-/// Extensions of RAPID modules in the fixtures.
-const EXTENSIONS: [&str; 2] = ["mod", "sys"];
 /// Mark of a movement in `fixtures/hard` that can't be rewritten.
 const REFUSED: &str = "! Refused:";
 /// Prefixes of statements that move the robot.
@@ -26,34 +26,10 @@ struct Case {
 }
 
 fn case(name: &str, paths: &[PathBuf]) -> Case {
-    let files: Vec<Source> = paths
-        .iter()
-        .enumerate()
-        .map(|(i, path)| {
-            let relative = path.file_name().unwrap().to_str().unwrap().to_owned();
-            let bytes = std::fs::read(path).unwrap();
-            Source { file: SourceFile::new(FileId(i as u32), relative.clone(), bytes), relative }
-        })
-        .collect();
-    let settings = Settings::default();
-    let model = find("IRB1600-10/1.45").unwrap();
-    let result = retrofit(&files, &model, &settings, &|_, _| ());
+    let files = support::read(paths);
+    let result = retrofit(&files, &irb1600(), &Settings::default(), &|_, _| ());
     let result = result.unwrap_or_else(|error| panic!("{name}: {error}"));
     Case { name: name.to_owned(), files, result }
-}
-
-fn modules(folder: &str) -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(folder);
-    let mut paths: Vec<_> = std::fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .filter(|path| {
-            let extension = path.extension().and_then(|extension| extension.to_str());
-            extension.is_some_and(|extension| EXTENSIONS.contains(&extension))
-        })
-        .collect();
-    paths.sort();
-    paths
 }
 
 impl Case {
@@ -196,7 +172,7 @@ fn refused_lines(bytes: &[u8]) -> Vec<u32> {
 #[test]
 fn programs_keep_every_byte_outside_their_guards() {
     for name in ["pick_place", "paper"] {
-        let case = case(name, &modules(name));
+        let case = case(name, &module_paths(name));
         case.check().unwrap_or_else(|why| panic!("{name}: {why}"));
         let rewritten: usize = (0..case.files.len()).map(|i| case.rewritten(i).len()).sum();
         assert!(rewritten > 0, "{name}: nothing was rewritten, so nothing was tested");
@@ -208,7 +184,7 @@ fn hard_programs_keep_every_byte_and_every_refused_movement() {
     let mut rewritten = 0;
     let mut refused = 0;
     let mut wrong = Vec::new();
-    for path in modules("hard") {
+    for path in module_paths("hard") {
         let case = case(path.file_name().unwrap().to_str().unwrap(), std::slice::from_ref(&path));
         if let Err(why) = case.check() {
             wrong.push(format!("{}: {why}", case.name));
@@ -226,7 +202,7 @@ fn hard_programs_keep_every_byte_and_every_refused_movement() {
 
 /// The check detects changed bytes.
 #[test]
-fn changed_bytes_are_found() {
+fn the_check_detects_changed_bytes() {
     let original = b"! a\n  MoveJ p,v,fine,t;\n! b\n";
     let start = find_bytes(original, b"MoveJ").unwrap();
     let span = start..start + "MoveJ p,v,fine,t;".len();

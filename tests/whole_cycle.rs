@@ -2,12 +2,11 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
-use std::fs;
-use std::process::Command;
+mod command;
 
+use command::{KNOWN_LIMITS, number};
 use serde_json::Value;
 
-const ROBOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/known_limits.toml");
 /// Rounding of a sum of times, s.
 const TIME: f64 = 1e-6;
 
@@ -33,23 +32,10 @@ fn program(line: &str) -> String {
 
 fn optimize(text: &str, options: &[&str]) -> Value {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("m.mod");
-    fs::write(&path, text).unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_joulepath"))
-        .args(["optimize", path.to_str().unwrap(), "--robot", ROBOT, "--allow-faster-joints"])
-        .args(["--format", "json"])
-        .args(options)
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let result: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(result["verification"]["passed"], true);
+    let robot = ["--robot", KNOWN_LIMITS, "--allow-faster-joints"];
+    let result = command::optimize(folder.path(), text, &[&robot[..], options].concat());
     assert!(number(&result, "/optimized/cycle_s") <= number(&result, "/original/cycle_s") + TIME);
     result
-}
-
-fn number(value: &Value, pointer: &str) -> f64 {
-    value.pointer(pointer).and_then(Value::as_f64).unwrap()
 }
 
 /// Time of the run that starts at a line, in the original and in the retrofit.
@@ -60,7 +46,7 @@ fn times(result: &Value, line: u64) -> [f64; 2] {
 }
 
 #[test]
-fn a_wait_of_known_length_is_used_up() {
+fn a_run_uses_a_wait_of_known_length() {
     let text = program("MoveL pD,v500,fine,tool0;");
     let unknown = optimize(&text, &[]);
     let known = optimize(&text, &["--input", "diPart=3"]);
@@ -74,14 +60,14 @@ fn a_wait_of_known_length_is_used_up() {
 
 /// After a change of the cell a slow stream may run while a quick one does not.
 #[test]
-fn no_run_takes_longer_so_that_another_one_may_be_quicker() {
+fn no_run_is_slowed_to_make_another_one_faster() {
     let result = optimize(&program("MoveL pD,v500,fine,tool0;"), &[]);
     let changes = [8, 10, 11, 12].map(|line| times(&result, line)).map(|[a, b]| b / a - 1.0);
     assert!(changes.iter().all(|change| *change < 1e-6), "{changes:?}");
 }
 
 #[test]
-fn what_is_free_leaves_its_path_and_is_never_worse() {
+fn a_free_path_deviates_and_needs_less_energy() {
     let line = "MoveL pD,v500,fine,tool0; ! joulepath: free";
     let text = program(line);
     let kept = optimize(&text, &[]);

@@ -171,7 +171,7 @@ fn powers((name, motion, _): &Published, open: &Open) -> Vec<f64> {
             let draws = Spread::new(&model).draws(&model, DRAWS).robots;
             draws.iter().map(|robot| robot.base_w).collect()
         }
-        Motion::Rest => of_program(&model, REST_PROGRAM).unwrap(),
+        Motion::Rest => mean_powers(&model, REST_PROGRAM).unwrap(),
         Motion::Cube(speed) => {
             let models: Vec<Model> =
                 open.accelerations.iter().map(|z| accelerated(&model, z * ACCELERATION)).collect();
@@ -180,7 +180,7 @@ fn powers((name, motion, _): &Published, open: &Open) -> Vec<f64> {
                 let cubes = open.loads.iter().map(|load| iso_cube(name, speed, place, *load));
                 let cubes: Vec<String> = cubes.collect();
                 let pairs = cubes.iter().flat_map(|cube| models.iter().map(move |it| (it, cube)));
-                let powers = pairs.map(|(model, cube)| of_program(model, cube));
+                let powers = pairs.map(|(model, cube)| mean_powers(model, cube));
                 Some(powers.collect::<Option<Vec<_>>>()?.concat())
             };
             places.filter_map(of_place).take(open.places).flatten().collect()
@@ -199,7 +199,7 @@ fn accelerated(model: &Model, logarithm: f64) -> Model {
 }
 
 /// Mean powers of all plausible robots \[W\]; `None` if a target is out of reach.
-fn of_program(model: &Model, text: &str) -> Option<Vec<f64>> {
+fn mean_powers(model: &Model, text: &str) -> Option<Vec<f64>> {
     let (program, entry) = read_program(&[source(text)], "main").unwrap();
     let simulation = simulate(&program, entry, model, &Options::default());
     if !simulation.unresolved.is_empty() {

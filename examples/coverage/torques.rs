@@ -43,7 +43,7 @@ pub(crate) enum Kind {
 
 /// Whether each interval contains the true torque of a random pose or motion.
 pub(crate) fn held(truth: &Model, unknown: &Model, kind: Kind) -> Vec<bool> {
-    let of = |model: &Model, [q, qd, qdd]: &[Vec<f64>; 3]| -> Vec<f64> {
+    let part = |model: &Model, [q, qd, qdd]: &[Vec<f64>; 3]| -> Vec<f64> {
         let (mut data, load) = (Data::new(), Load::none());
         let still = gravity(model, &mut data, &load, q);
         let all = match kind {
@@ -58,7 +58,7 @@ pub(crate) fn held(truth: &Model, unknown: &Model, kind: Kind) -> Vec<bool> {
         all[..model.dof].to_vec()
     };
     let states = states(truth);
-    let truths: Vec<Vec<f64>> = states.iter().map(|state| of(truth, state)).collect();
+    let truths: Vec<Vec<f64>> = states.iter().map(|state| part(truth, state)).collect();
     let spread = Spread::new(unknown);
     let draws = spread.draws(unknown, DRAWS).robots;
     let models: Vec<Model> = draws.iter().map(|robot| drawn(unknown, robot).unwrap()).collect();
@@ -67,7 +67,8 @@ pub(crate) fn held(truth: &Model, unknown: &Model, kind: Kind) -> Vec<bool> {
         let largest = truths.iter().map(|tau| tau[j].abs()).fold(0.0, f64::max);
         for (state, tau) in states.iter().zip(&truths) {
             if tau[j].abs() > SMALL * largest && largest > 1e-6 {
-                let values: Vec<f64> = models.par_iter().map(|model| of(model, state)[j]).collect();
+                let values: Vec<f64> =
+                    models.par_iter().map(|model| part(model, state)[j]).collect();
                 let Interval { low, high, .. } = Interval::from_values(&values);
                 held.push((low..=high).contains(&tau[j]));
             }

@@ -1,4 +1,4 @@
-//! Robots, loads and states for tests of the dynamics.
+//! Robots, loads and states for tests of kinematics and dynamics.
 
 #![allow(
     dead_code,
@@ -8,7 +8,7 @@
 
 use joulepath::arm::dynamics::Load;
 use joulepath::arm::robot::{MAX_DOF, Model, find, from_toml};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Isometry3, Matrix3, Vector3};
 use proptest::prelude::*;
 
 /// Three joints in general position, a tool frame in general position, rotors.
@@ -40,15 +40,15 @@ pub(crate) const ROBOTS: usize = 7;
 
 /// All of them.
 pub(crate) fn robots() -> [Model; ROBOTS] {
-    let of = |name: &str, text: &str| from_toml(name, text).expect("a robot of the tests");
+    let robot = |name: &str, text: &str| from_toml(name, text).expect("a robot of the tests");
     [
         find("IRB1600-10/1.45").expect("in the catalogue"),
-        of("skew.toml", SKEW),
-        of("rods.toml", RODS),
-        of("wrist.toml", WRIST),
-        of("seven.toml", SEVEN),
-        of("one.toml", ONE),
-        of("tilted.toml", TILTED),
+        robot("skew.toml", SKEW),
+        robot("rods.toml", RODS),
+        robot("wrist.toml", WRIST),
+        robot("seven.toml", SEVEN),
+        robot("one.toml", ONE),
+        robot("tilted.toml", TILTED),
     ]
 }
 
@@ -65,6 +65,19 @@ pub(crate) fn load() -> Load {
 pub(crate) fn states() -> impl Strategy<Value = [[f64; MAX_DOF]; 3]> {
     let values = |size: f64| prop::array::uniform7(-size..size);
     (values(3.0), values(4.0), values(20.0)).prop_map(|(q, qd, qdd)| [q, qd, qdd])
+}
+
+/// The larger distance of two poses: of the positions \[m\], or of the orientations \[rad\].
+pub(crate) fn pose_distance(a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
+    (a.translation.vector - b.translation.vector).norm().max(a.rotation.angle_to(&b.rotation))
+}
+
+/// Whether joint angles agree except for whole turns.
+pub(crate) fn same_angles(a: &[f64; 6], b: &[f64; 6], tolerance: f64) -> bool {
+    a.iter().zip(b).all(|(a, b)| {
+        let d = (a - b).rem_euclid(std::f64::consts::TAU);
+        d.min(std::f64::consts::TAU - d) < tolerance
+    })
 }
 
 /// The largest absolute value, at least 1.

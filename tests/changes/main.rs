@@ -11,9 +11,9 @@ mod compare;
 mod support;
 
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::path::PathBuf;
 
-use joulepath::arm::robot::{Model, find};
+use joulepath::arm::robot::Model;
 use joulepath::rapid::text::{FileId, SourceFile};
 use joulepath::retime::motion::{Options, Simulation, simulate};
 use joulepath::tool::retrofit::{
@@ -22,7 +22,7 @@ use joulepath::tool::retrofit::{
 use rayon::prelude::*;
 
 use cell::{Cell, Change, Changed, Counts, apply, is_within, kind, marked};
-use support::Random;
+use support::{Random, irb1600, module_paths, sources};
 
 /// Default number of changes.
 const CHANGES: usize = 10_000;
@@ -44,42 +44,21 @@ struct Case {
 }
 
 fn programs() -> Vec<(String, Vec<String>)> {
-    let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
-    let read =
-        |path: &Path| String::from_utf8_lossy(&std::fs::read(path).unwrap()).replace("\r\n", "\n");
-    let mut programs = Vec::new();
-    for folder in ["changes", "hard", "lint"] {
-        let mut paths: Vec<_> = std::fs::read_dir(fixtures.join(folder))
-            .unwrap()
-            .map(|entry| entry.unwrap().path())
-            .filter(|path| path.extension().is_some_and(|extension| extension == "mod"))
-            .collect();
-        paths.sort();
-        for path in paths {
-            let name = path.file_stem().unwrap().to_string_lossy().into_owned();
-            programs.push((name, vec![read(&path)]));
-        }
-    }
-    for folder in ["pick_place", "paper", "backup/RAPID/TASK2/PROGMOD", "backup/RAPID/TASK2/SYSMOD"]
-    {
-        let mut paths: Vec<_> = std::fs::read_dir(fixtures.join(folder))
-            .unwrap()
-            .map(|entry| entry.unwrap().path())
-            .filter(|path| path.extension().is_some_and(|e| e == "mod" || e == "sys"))
-            .collect();
-        paths.sort();
-        programs.push((folder.to_owned(), paths.iter().map(|path| read(path)).collect()));
-    }
-    programs
+    let read = |path: &PathBuf| {
+        String::from_utf8_lossy(&std::fs::read(path).unwrap()).replace("\r\n", "\n")
+    };
+    let single = ["changes", "hard", "lint"].into_iter().flat_map(module_paths).map(|path| {
+        let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+        (name, vec![read(&path)])
+    });
+    let several =
+        ["pick_place", "paper", "backup/RAPID/TASK2/PROGMOD", "backup/RAPID/TASK2/SYSMOD"]
+            .map(|folder| (folder.to_owned(), module_paths(folder).iter().map(read).collect()));
+    single.chain(several).collect()
 }
 
-fn sources(texts: &[String]) -> Vec<Source> {
-    let changed = apply(texts, &find("IRB1600-10/1.45").unwrap(), &[]);
-    sources_of(changed.files)
-}
-
-fn sources_of(files: Vec<SourceFile>) -> Vec<Source> {
-    files.into_iter().map(|file| Source { relative: file.path.clone(), file }).collect()
+fn unchanged(texts: &[String]) -> Vec<Source> {
+    sources(apply(texts, &irb1600(), &[]).files)
 }
 
 /// Signals of a program: names without declaration that no instruction sets.
@@ -126,13 +105,13 @@ fn case((name, texts): (String, Vec<String>), model: &Model, way: Way) -> Option
         inline_targets: true,
         ..Settings::default()
     };
-    let result = retrofit(&sources(&original), model, &settings, &|_, _| ()).ok()?;
+    let result = retrofit(&unchanged(&original), model, &settings, &|_, _| ()).ok()?;
     assert!(result.verification.passed, "{name}");
     let streams = result.segments.iter().filter(|segment| segment.rewritten).count();
     if streams == 0 {
         return None;
     }
-    is_taken_out(&name, &original, &result);
+    assert_streams_can_be_removed(&name, &original, &result);
     let emitted: Vec<String> = result
         .outputs
         .iter()
@@ -147,7 +126,7 @@ fn case((name, texts): (String, Vec<String>), model: &Model, way: Way) -> Option
 }
 
 /// Removing the streams from a retrofit restores the original bytes.
-fn is_taken_out(name: &str, original: &[String], result: &Retrofit) {
+fn assert_streams_can_be_removed(name: &str, original: &[String], result: &Retrofit) {
     let prefix = result.outputs.iter().find_map(|output| prefix(&output.bytes)).unwrap();
     for output in result.outputs.iter().filter(|output| output.kind != OutputKind::New) {
         let file = SourceFile::new(FileId(0), output.path.clone(), output.bytes.clone());
@@ -169,14 +148,14 @@ fn renumbered(text: &str, count: usize, from: usize) -> String {
 }
 
 fn run(changed: Changed) -> Option<(Simulation, Model)> {
-    let (program, entry) = read_program(&sources_of(changed.files), "main").ok()?;
+    let (program, entry) = read_program(&sources(changed.files), "main").ok()?;
     let options = Options { max_time: Some(600.0), ..changed.options };
     Some((simulate(&program, entry, &changed.model, &options), changed.model))
 }
 
 #[test]
 fn original_and_retrofit_agree_under_every_change() {
-    let model = find("IRB1600-10/1.45").unwrap();
+    let model = irb1600();
     let count = std::env::var("CHANGES").ok().and_then(|count| count.parse().ok());
     let count: usize = count.unwrap_or(CHANGES);
     let programs = programs();
@@ -233,8 +212,8 @@ fn original_and_retrofit_agree_under_every_change() {
 
 /// Settings that are inserted later must not affect a stream that was computed without them.
 #[test]
-fn settings_that_are_added_later_stop_streams() {
-    let model = find("IRB1600-10/1.45").unwrap();
+fn settings_added_later_prevent_streams() {
+    let model = irb1600();
     let (name, texts) = programs().into_iter().find(|(name, _)| name == MIXED).unwrap();
     let case = case((name, texts), &model, WAYS[2]).unwrap();
     let streams = |statement: &str| {

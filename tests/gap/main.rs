@@ -19,7 +19,7 @@ use joulepath::learn::identify::Samples;
 use nalgebra::{DMatrix, DVector};
 
 use excited::{irb1600, normal};
-use simulated::{Robot, spread};
+use simulated::{Robot, perturbed};
 
 /// Largest deviation of a parameter, in standard deviations.
 const WITHIN: f64 = 4.0;
@@ -27,9 +27,9 @@ const WITHIN: f64 = 4.0;
 const SAME_TORQUES: f64 = 1e-2;
 /// Interval of the rows \[s\], and relative tolerance of a force.
 const ROW: f64 = 0.01;
-const OF_FORCE: f64 = 0.05;
+const FORCE_TOLERANCE: f64 = 0.05;
 /// Tolerance of a coupling.
-const OF_COUPLING: f64 = 0.005;
+const COUPLING_TOLERANCE: f64 = 0.005;
 /// Least reduction of the gap by an effect that is found.
 const SHRINKS: f64 = 0.5;
 
@@ -41,10 +41,10 @@ fn diagnosed(nominal: &Model, robot: &Robot<'_>) -> Diagnosis {
 }
 
 fn diagnosed_by(nominal: &Model, robot: &Robot<'_>, effects: Vec<&'static Effect>) -> Diagnosis {
-    trusting(nominal, robot, &Settings { trust: Trust::Commissioned, effects })
+    diagnosed_with(nominal, robot, &Settings { trust: Trust::Commissioned, effects })
 }
 
-fn trusting(nominal: &Model, robot: &Robot<'_>, settings: &Settings) -> Diagnosis {
+fn diagnosed_with(nominal: &Model, robot: &Robot<'_>, settings: &Settings) -> Diagnosis {
     let samples = [1, 2, 3].map(|seed| robot.samples(seed));
     let records = |which: &[usize]| -> Vec<Record<'_>> {
         which.iter().flat_map(|k| Record::all(nominal, &samples[*k])).collect()
@@ -55,13 +55,13 @@ fn trusting(nominal: &Model, robot: &Robot<'_>, settings: &Settings) -> Diagnosi
 /// Names of the effects with their joints, from 1.
 fn named(found: &Diagnosis) -> Vec<(&'static str, Vec<usize>)> {
     let joints = |joints: &[usize]| joints.iter().map(|joint| joint + 1).collect();
-    found.effects.iter().map(|said| (said.effect.id, joints(&said.joints))).collect()
+    found.effects.iter().map(|asserted| (asserted.effect.id, joints(&asserted.joints))).collect()
 }
 
 #[test]
 fn healthy_robots_have_no_effect() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 3);
+    let truth = perturbed(&nominal, 3);
     let found = diagnosed(&nominal, &Robot { model: &truth, effects: &[], noise: 0.005 });
     assert!(named(&found).is_empty(), "{:?}", named(&found));
     assert!(matches!(found.verdict, Verdict::ParametersOnly | Verdict::NoGap));
@@ -71,28 +71,28 @@ fn healthy_robots_have_no_effect() {
 
 /// Effects that the baseline already contains are no changes; new effects are.
 #[test]
-fn of_a_baseline_only_changes_are_told() {
+fn only_changes_against_the_baseline_are_reported() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 3);
+    let truth = perturbed(&nominal, 3);
     let [load, friction] = ["payload", "stribeck"].map(|id| effect(id).unwrap());
     let both: [(&Effect, usize, &[f64]); 2] = [(load, 0, &LOAD), (friction, 1, &[8.0, 0.1])];
     let logged = |effects, seed| Robot { model: &truth, effects, noise: 0.005 }.samples(seed);
     let before = logged(&both[..1], 4);
     let settings = Settings { trust: Trust::Commissioned, effects: ALL.iter().collect() };
-    for (effects, told) in [(&both[..1], vec![]), (&both[..], vec![("stribeck", vec![2])])] {
+    for (effects, reported) in [(&both[..1], vec![]), (&both[..], vec![("stribeck", vec![2])])] {
         let now = [1, 2, 3].map(|seed| logged(effects, seed));
         let [train, held, before] = [&[&now[0], &now[1]][..], &[&now[2]], &[&before]];
         let found = diagnose_logs(&nominal, Logs { train, held, before }, &settings, &|_| {});
-        assert_eq!(named(&found), told);
+        assert_eq!(named(&found), reported);
         let known: Vec<&str> = found.before.iter().flatten().map(|of| of.effect.id).collect();
         assert_eq!(known, ["payload"]);
         // The model contains both effects.
         assert!(found.shrink.total.value > SHRINKS, "{:?}", found.shrink);
         let held = &Record::all(&nominal, &now[2])[0];
-        let said = predicted(held, &found.improved.applied);
+        let predictions = predicted(held, &found.improved.applied);
         let left = |joint: usize| -> f64 {
-            let squares = held.measured[joint].iter().zip(&said[joint]);
-            let squares = squares.map(|(measured, said)| (measured - said).powi(2));
+            let squares = held.measured[joint].iter().zip(&predictions[joint]);
+            let squares = squares.map(|(measured, predicted)| (measured - predicted).powi(2));
             (squares.sum::<f64>() / held.motion.rows() as f64).sqrt()
                 / held.motion.scale(joint).torque[1]
         };
@@ -103,7 +103,7 @@ fn of_a_baseline_only_changes_are_told() {
 #[test]
 fn offsets_are_found_with_their_size() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 3);
+    let truth = perturbed(&nominal, 3);
     let offset = effect("torque_offset").unwrap();
     let expected = 0.6;
     let robot = Robot { model: &truth, effects: &[(offset, 4, &[expected])], noise: 0.005 };
@@ -111,10 +111,13 @@ fn offsets_are_found_with_their_size() {
     assert_eq!(named(&found), [("torque_offset", vec![5])]);
     let samples = robot.samples(1);
     let record = Record::all(&nominal, &samples);
-    let of = &found.effects[0].parameters[0];
+    let found_offset = &found.effects[0].parameters[0];
     // Assumed standard deviation of the nominal model's own offset, as a share of the torque.
     let believed = 0.002 * record[0].motion.scale(4).torque[1];
-    assert!((of.value - expected).abs() < WITHIN * of.sd.hypot(believed), "{of:?} {expected}");
+    assert!(
+        (found_offset.value - expected).abs() < WITHIN * found_offset.sd.hypot(believed),
+        "{found_offset:?} {expected}"
+    );
     // The library may be incomplete, which limits the probability.
     assert!((0.5..=0.95).contains(&found.effects[0].probability));
     assert!(found.shrink.by_effect.value > SHRINKS, "{:?}", found.shrink);
@@ -124,11 +127,11 @@ fn offsets_are_found_with_their_size() {
 #[test]
 fn shares_of_the_gap_add_up() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 3);
+    let truth = perturbed(&nominal, 3);
     let stribeck = effect("stribeck").unwrap();
     let robot = Robot { model: &truth, effects: &[(stribeck, 1, &[4.0, 0.15])], noise: 0.005 };
     let found = diagnosed(&nominal, &robot);
-    let ids: Vec<&'static str> = found.effects.iter().map(|said| said.effect.id).collect();
+    let ids: Vec<&'static str> = found.effects.iter().map(|asserted| asserted.effect.id).collect();
     assert_eq!(ids, ["stribeck"]);
     let samples = robot.samples(3);
     let records = Record::all(&nominal, &samples);
@@ -136,19 +139,19 @@ fn shares_of_the_gap_add_up() {
     assert_eq!(shared.players, ["stribeck", PARAMETERS]);
     // Squared residuals of both models by joint, while the joint moves.
     let squares = |model: &Model| -> Vec<f64> {
-        let said = predicted(&records[0], model);
-        let of = |joint: usize| {
+        let predictions = predicted(&records[0], model);
+        let residual = |joint: usize| {
             let (mut missed, mut size) = (0.0, 0.0);
-            for (row, said) in said[joint].iter().enumerate() {
+            for (row, predicted) in predictions[joint].iter().enumerate() {
                 if records[0].moves(joint, row) {
                     let measured = records[0].measured[joint][row];
-                    missed += (measured - said).powi(2);
+                    missed += (measured - predicted).powi(2);
                     size += measured * measured;
                 }
             }
             missed / size
         };
-        (0..nominal.dof).map(of).collect()
+        (0..nominal.dof).map(residual).collect()
     };
     let [before, after] = [&nominal, &found.improved.applied].map(squares);
     for joint in 0..nominal.dof {
@@ -177,9 +180,9 @@ fn shares_of_the_gap_add_up() {
 }
 
 #[test]
-fn flipped_currents_are_told() {
+fn a_flipped_current_sign_is_found() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 4);
+    let truth = perturbed(&nominal, 4);
     let sign = effect("current_sign").unwrap();
     let robot = Robot { model: &truth, effects: &[(sign, 2, &[1.0])], noise: 0.005 };
     let found = diagnosed(&nominal, &robot);
@@ -189,9 +192,9 @@ fn flipped_currents_are_told() {
 
 /// The windows are off the coarse grid, whose best window leads to another optimum.
 #[test]
-fn contacts_are_found_with_their_windows() {
+fn contacts_are_found_with_force_and_time_window() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 5);
+    let truth = perturbed(&nominal, 5);
     let contact = effect("contact").unwrap();
     for rise in [0.0, 0.35] {
         let coordinates = [30.0, -40.0, 12.0, rise, 2.636, 3.792, 10.0];
@@ -202,7 +205,11 @@ fn contacts_are_found_with_their_windows() {
             found.effects[0].parameters.iter().find(|of| of.name == name).unwrap().value
         };
         let force = (30.0_f64.powi(2) + 40.0_f64.powi(2) + 12.0_f64.powi(2)).sqrt();
-        assert!((value("force") / force - 1.0).abs() < OF_FORCE, "{rise} {}", value("force"));
+        assert!(
+            (value("force") / force - 1.0).abs() < FORCE_TOLERANCE,
+            "{rise} {}",
+            value("force")
+        );
         for (name, expected) in [("t_start_s", 2.636), ("t_end_s", 3.792)] {
             assert!((value(name) - expected).abs() < ROW, "{rise} {name} {}", value(name));
         }
@@ -211,37 +218,37 @@ fn contacts_are_found_with_their_windows() {
 
 /// Backlash depends on the actual load, not on that of a model with wrong masses.
 #[test]
-fn backlash_is_told_of_models_that_are_far_off() {
+fn backlash_is_found_despite_wrong_masses() {
     let nominal = irb1600();
-    let mut truth = spread(&nominal, 5);
+    let mut truth = perturbed(&nominal, 5);
     for (link, factor) in truth.links.iter_mut().zip([1.0, 1.4, 0.6, 1.5, 0.5, 1.5]) {
         link.mass *= factor;
     }
     let effects = [(effect("backlash").unwrap(), 2, [0.005, 0.0, 1e5].as_slice())];
     let robot = Robot { model: &truth, effects: &effects, noise: 0.003 };
     let settings = Settings { trust: Trust::Cad, effects: ALL.iter().collect() };
-    let found = trusting(&nominal, &robot, &settings);
+    let found = diagnosed_with(&nominal, &robot, &settings);
     assert_eq!(named(&found), [("backlash", vec![3])], "{:?}", found.reasons);
 }
 
 /// At reversals of motor 6 the rows are so accurate that only the right coupling explains them.
 #[test]
-fn couplings_of_wrists_are_found_to_the_row() {
+fn a_wrist_coupling_is_found_accurately() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 5);
+    let truth = perturbed(&nominal, 5);
     let effects = [(effect("wrist_coupling").unwrap(), 5, [-0.254, 0.0, 0.0, 0.0].as_slice())];
     let found = diagnosed(&nominal, &Robot { model: &truth, effects: &effects, noise: 5e-4 });
     assert_eq!(named(&found), [("wrist_coupling", vec![5, 6])], "{:?}", found.reasons);
     let coupling = found.effects[0].parameters[0].value;
-    assert!((coupling + 0.254).abs() < OF_COUPLING, "{coupling}");
+    assert!((coupling + 0.254).abs() < COUPLING_TOLERANCE, "{coupling}");
 }
 
 /// A load on the opposite side of axis 5 also reverses the sign of its torques.
 #[test]
-fn heavy_loads_are_no_other_sign() {
+fn a_heavy_load_is_not_mistaken_for_a_flipped_sign() {
     let mut nominal = irb1600();
     nominal.links[5].com.z = -0.15;
-    let truth = spread(&nominal, 3);
+    let truth = perturbed(&nominal, 3);
     let mut load = LOAD;
     for x in &mut load {
         *x *= 5.0;
@@ -255,9 +262,9 @@ fn heavy_loads_are_no_other_sign() {
 
 /// A load at the flange tilts with the base.
 #[test]
-fn a_leaning_base_is_told_under_a_heavy_load() {
+fn a_tilted_base_is_found_under_a_heavy_load() {
     let nominal = irb1600();
-    let mut truth = spread(&nominal, 5);
+    let mut truth = perturbed(&nominal, 5);
     let load = LOAD.map(|x| 15.0 * x);
     truth.links[5] = with_body(&truth.links[5], &nominal.kinematics.flange, &load);
     let effects = [(effect("base_tilt").unwrap(), 0, [0.1, -0.06].as_slice())];
@@ -269,9 +276,9 @@ fn a_leaning_base_is_told_under_a_heavy_load() {
 
 /// Saturation may grow with a lower power than the cube of the torque.
 #[test]
-fn saturation_is_told_from_friction_of_the_load() {
+fn current_saturation_is_distinguished_from_load_friction() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 5);
+    let truth = perturbed(&nominal, 5);
     let saturation = effect("current_saturation").unwrap();
     let effects = [(saturation, 2, [0.3, 1.0].as_slice())];
     let found = diagnosed(&nominal, &Robot { model: &truth, effects: &effects, noise: 0.002 });
@@ -282,9 +289,9 @@ fn saturation_is_told_from_friction_of_the_load() {
 
 /// Each joint has a small breakaway step of its friction.
 #[test]
-fn little_friction_at_breakaway_is_not_named() {
+fn a_small_breakaway_friction_is_not_reported() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 3);
+    let truth = perturbed(&nominal, 3);
     let stribeck = effect("stribeck").unwrap();
     let named_with = |share: f64| {
         let stiction = share * truth.friction.coulomb[1];
@@ -298,22 +305,22 @@ fn little_friction_at_breakaway_is_not_named() {
 }
 
 #[test]
-fn two_effects_are_told() {
+fn two_effects_are_found() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 6);
+    let truth = perturbed(&nominal, 6);
     let [payload, stribeck] = ["payload", "stribeck"].map(|id| effect(id).unwrap());
     let effects = [(payload, 0, LOAD.as_slice()), (stribeck, 1, [8.0, 0.1].as_slice())];
     let found = diagnosed(&nominal, &Robot { model: &truth, effects: &effects, noise: 0.003 });
-    let mut told = named(&found);
-    told.sort();
-    assert_eq!(told, [("payload", vec![]), ("stribeck", vec![2])]);
+    let mut reported = named(&found);
+    reported.sort();
+    assert_eq!(reported, [("payload", vec![]), ("stribeck", vec![2])]);
 }
 
 /// A strong load, or a strong friction of another joint, does not hide a weak effect.
 #[test]
-fn weak_effects_beside_strong_ones_are_told() {
+fn weak_effects_are_found_beside_strong_ones() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 6);
+    let truth = perturbed(&nominal, 6);
     let [payload, stribeck, spot] =
         ["payload", "stribeck", "position_friction"].map(|id| effect(id).unwrap());
     let load = LOAD.map(|of| 4.0 * of);
@@ -327,9 +334,9 @@ fn weak_effects_beside_strong_ones_are_told() {
 
 /// A permanently dragging brake is Coulomb friction.
 #[test]
-fn a_brake_that_never_lets_go_is_friction() {
+fn a_permanently_dragging_brake_is_in_one_class_with_friction() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 5);
+    let truth = perturbed(&nominal, 5);
     let effects = [(effect("brake_drag").unwrap(), 0, [30.0, 0.0, 0.0, 0.0].as_slice())];
     let robot = Robot { model: &truth, effects: &effects, noise: 0.003 };
     let found = diagnosed_by(
@@ -342,9 +349,9 @@ fn a_brake_that_never_lets_go_is_friction() {
 
 /// Late release of the brakes at four joints at once is implausible.
 #[test]
-fn brakes_at_most_joints_are_none() {
+fn brake_drag_at_most_joints_is_not_reported() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 5);
+    let truth = perturbed(&nominal, 5);
     let brake = effect("brake_drag").unwrap();
     let window = [4.0, 7.0, 10.0];
     let coordinates = [20.0, 20.0, 2.0, 1.0].map(|drag| [&[drag], window.as_slice()].concat());
@@ -358,9 +365,9 @@ fn brakes_at_most_joints_are_none() {
 
 /// With a heavy load the torques hardly resemble those of the robot without it.
 #[test]
-fn heavy_loads_are_no_other_robot() {
+fn a_heavy_load_is_not_mistaken_for_another_robot() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 6);
+    let truth = perturbed(&nominal, 6);
     let [mass, x, y, z] = [15.0, -0.4, 0.4, 0.4];
     let moments = [y * y + z * z, x * x + z * z, x * x + y * y, -x * y, -x * z, -y * z];
     let body: Vec<f64> = [1.0, x, y, z].iter().chain(&moments).map(|of| mass * of).collect();
@@ -369,9 +376,10 @@ fn heavy_loads_are_no_other_robot() {
     let samples = robot.samples(1);
     let record = &Record::all(&nominal, &samples)[0];
     let foreign = |joint: &usize| {
-        let (of, said) = (&record.measured[*joint], &record.motion.torque[*joint]);
+        let (measured, modelled) = (&record.measured[*joint], &record.motion.torque[*joint]);
         let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        product(of, said) < 0.5 * (product(of, of) * product(said, said)).sqrt()
+        product(measured, modelled)
+            < 0.5 * (product(measured, measured) * product(modelled, modelled)).sqrt()
     };
     assert!(2 * (0..nominal.dof).filter(foreign).count() >= nominal.dof);
     let found = diagnosed(&nominal, &robot);
@@ -380,7 +388,7 @@ fn heavy_loads_are_no_other_robot() {
 
 /// Friction and rotor inertia can decrease at most to zero; the coupling remains.
 #[test]
-fn a_wrist_loses_no_more_than_it_has() {
+fn friction_and_rotor_inertia_of_a_wrist_do_not_become_negative() {
     let nominal = irb1600();
     let change = vec![-0.4, -1e3, -1e3, -1e3];
     let fitted = Fitted {
@@ -400,7 +408,7 @@ fn a_wrist_loses_no_more_than_it_has() {
 
 /// Masses and first moments of loads at the flange add up; centres of mass do not.
 #[test]
-fn a_load_comes_on_top_of_the_one_that_is_listed() {
+fn a_diagnosed_load_is_added_to_the_listed_one() {
     let payload = effect("payload").unwrap();
     let fitted = Fitted {
         effect: payload,
@@ -424,9 +432,9 @@ fn a_load_comes_on_top_of_the_one_that_is_listed() {
 
 /// If most joints differ, the cause is wrong masses or another unit, not the motors.
 #[test]
-fn torque_constants_of_most_joints_are_none() {
+fn wrong_torque_constants_at_most_joints_are_not_reported() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 5);
+    let truth = perturbed(&nominal, 5);
     let constant = effect("torque_constant").unwrap();
     let effects: Vec<(&Effect, usize, &[f64])> =
         (0..nominal.dof).map(|joint| (constant, joint, &[0.2][..])).collect();
@@ -439,9 +447,9 @@ fn torque_constants_of_most_joints_are_none() {
 
 /// The residual of a force's form has a window, too.
 #[test]
-fn a_force_beside_friction_is_no_brake() {
+fn a_force_beside_friction_is_not_mistaken_for_a_brake() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 5);
+    let truth = perturbed(&nominal, 5);
     let [contact, friction] = ["contact", "position_friction"].map(|id| effect(id).unwrap());
     let effects = [
         (contact, 0, [60.0, 0.0, 20.0, 0.0, 2.0, 4.0, 10.0].as_slice()),
@@ -452,7 +460,7 @@ fn a_force_beside_friction_is_no_brake() {
 }
 
 #[test]
-fn bodies_that_cannot_be_keep_their_torques() {
+fn impossible_bodies_are_replaced_by_possible_ones_with_the_same_torques() {
     let nominal = irb1600();
     let n = nominal.dof;
     let count = (RIGID + JOINT) * n;
@@ -483,7 +491,7 @@ fn bodies_that_cannot_be_keep_their_torques() {
 
 /// For torques of other joints and for resting joints no effect is asserted.
 #[test]
-fn logs_that_tell_nothing_of_this_robot_have_no_effect() {
+fn unrelated_torques_and_resting_joints_have_no_effect() {
     let nominal = irb1600();
     let robot = Robot { model: &nominal, effects: &[], noise: 0.005 };
     let diagnosed = |change: &dyn Fn(&mut Samples)| {
@@ -543,9 +551,9 @@ fn logs_that_tell_nothing_of_this_robot_have_no_effect() {
 }
 
 #[test]
-fn another_unit_is_no_effect() {
+fn another_torque_unit_is_recognised_as_a_factor() {
     let nominal = irb1600();
-    let truth = spread(&nominal, 3);
+    let truth = perturbed(&nominal, 3);
     let robot = Robot { model: &truth, effects: &[], noise: 0.005 };
     let mut samples = robot.samples(1);
     let factor =

@@ -18,8 +18,8 @@ fn log(seed: u64, more: &dyn Fn(&Powers, usize, f64) -> f64) -> Powers {
         let terms: Vec<[f64; 3]> =
             (1..6).map(|k| [k.into(), normal(random), normal(random)]).collect();
         let at = |t: f64| -> f64 {
-            let of = |[k, a, b]: &[f64; 3]| a * (k * t).sin() + b * (k * t).cos();
-            size * terms.iter().map(of).sum::<f64>()
+            let harmonic = |[k, a, b]: &[f64; 3]| a * (k * t).sin() + b * (k * t).cos();
+            size * terms.iter().map(harmonic).sum::<f64>()
         };
         (0..ROWS).map(|row| at(std::f64::consts::TAU * row as f64 / ROWS as f64)).collect()
     };
@@ -60,7 +60,7 @@ fn named(found: &PowerFound) -> Vec<(&'static str, Option<usize>)> {
 }
 
 #[test]
-fn the_same_power_is_no_effect() {
+fn unchanged_power_has_no_effect() {
     let found = found(&|_, _, _| 0.0);
     assert!(named(&found).is_empty() && !found.is_unknown);
 }
@@ -70,14 +70,14 @@ fn losses_are_found_with_their_size() {
     let loss = 4e-3;
     let found = found(&|log, row, share| share * loss * log.tau[1][row].powi(2));
     assert_eq!(named(&found), [("copper_loss", Some(1))]);
-    let of = &found.effects[0].parameters[0];
-    assert!((of.value - loss).abs() < WITHIN * of.sd, "{of:?}");
+    let estimate = &found.effects[0].parameters[0];
+    assert!((estimate.value - loss).abs() < WITHIN * estimate.sd, "{estimate:?}");
     assert!(found.gap[2] < 0.1 * found.gap[1], "{:?}", found.gap);
 }
 
 /// An inverter with resistance.
 #[test]
-fn of_a_joints_losses_one_is_told() {
+fn one_kind_of_loss_is_reported_for_a_joint() {
     let more = |log: &Powers, row: usize, share: f64| {
         let tau = log.tau[1][row].abs();
         share * (0.6 * tau + 2e-4 * tau * tau)
@@ -86,33 +86,33 @@ fn of_a_joints_losses_one_is_told() {
 }
 
 #[test]
-fn two_losses_are_told() {
+fn two_losses_are_found() {
     let more = |log: &Powers, row: usize, share: f64| 30.0 + share * 60.0 * log.qd[2][row].powi(2);
-    let mut told = named(&found(&more));
-    told.sort_unstable();
-    assert_eq!(told, [("base_load", None), ("iron_loss", Some(2))]);
+    let mut reported = named(&found(&more));
+    reported.sort_unstable();
+    assert_eq!(reported, [("base_load", None), ("iron_loss", Some(2))]);
 }
 
 /// A load on the DC link consumes a part of the regenerated energy.
 #[test]
-fn a_load_on_the_link_of_the_drives_is_a_base_load() {
+fn a_load_on_the_dc_link_is_reported_as_base_load() {
     let found = found(&|_, _, share| 60.0 * share);
     assert_eq!(named(&found), [("base_load", None)]);
     assert_eq!(found.effects[0].class, ["base_load", "brake_power"]);
-    let of = &found.effects[0].parameters[0];
-    assert!((of.value - 60.0).abs() < WITHIN * of.sd, "{of:?}");
+    let estimate = &found.effects[0].parameters[0];
+    assert!((estimate.value - 60.0).abs() < WITHIN * estimate.sd, "{estimate:?}");
 }
 
 /// With two kinds of losses the reference is accurate to half a percent only.
 #[test]
-fn little_power_is_not_named() {
+fn a_small_change_of_power_is_not_reported() {
     let found = found(&|log, row, share| share * 2e-5 * log.tau[1][row].powi(2));
     assert!(named(&found).is_empty() && !found.is_unknown, "{:?}", found.gap);
 }
 
 /// Power that no loss explains has no name.
 #[test]
-fn other_power_is_unknown() {
+fn unexplained_power_is_unknown() {
     let more = |_: &Powers, row: usize, _: f64| if row % 200 < 60 { 80.0 } else { 0.0 };
     let found = found(&more);
     assert!(named(&found).is_empty() && found.is_unknown);

@@ -8,7 +8,7 @@ use joulepath::learn::log::{Channel, Log};
 use crate::excited::{normal, series};
 
 /// The robot with parameter errors as after an identification.
-pub(crate) fn spread(model: &Model, seed: u64) -> Model {
+pub(crate) fn perturbed(model: &Model, seed: u64) -> Model {
     let mut random = fastrand::Rng::with_seed(seed);
     let mut other = model.clone();
     for link in &mut other.links {
@@ -41,11 +41,11 @@ impl Robot<'_> {
         let count = 1000;
         let states = series.sampled(count);
         let n = self.model.dof;
-        let of = |order: usize| -> Vec<Vec<f64>> {
+        let columns = |order: usize| -> Vec<Vec<f64>> {
             (0..n).map(|j| states.iter().map(|s| s[order][j]).collect()).collect()
         };
         let t = (0..count).map(|i| 0.01 * i as f64).collect();
-        let motion = Motion::new(self.model, t, [of(0), of(1), of(2)], &[], true);
+        let motion = Motion::new(self.model, t, [columns(0), columns(1), columns(2)], &[], true);
         let mut torque = motion.torque.clone();
         for (effect, joint, coordinates) in self.effects {
             for (to, added) in effect.added(&motion, *joint, coordinates) {

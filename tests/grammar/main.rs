@@ -134,7 +134,7 @@ fn every_production_can_be_reached() {
 }
 
 #[test]
-fn keywords_are_those_of_the_lexer() {
+fn grammar_and_lexer_have_the_same_keywords() {
     let lexical = part("lexical");
     let written: Vec<&str> = lexical["keyword"].literals();
     let known: Vec<&str> = KEYWORDS.iter().map(|(word, _)| *word).collect();
@@ -167,7 +167,7 @@ fn fixtures_exercise_every_production() {
 }
 
 #[test]
-fn mistakes_are_no_programs() {
+fn grammar_and_parser_agree_on_fixtures_with_mistakes() {
     let grammar = Grammar::new(&productions());
     for (name, bytes) in fixtures("err") {
         let tokens = significant(&bytes);
@@ -258,7 +258,7 @@ fn mutated(
 }
 
 #[test]
-fn tokens_are_those_of_the_lexical_grammar() {
+fn tokens_agree_with_the_lexical_grammar() {
     let lexical = part("lexical");
     let grammar = Grammar::new(&lexical);
     let mut used: BTreeSet<String> = BTreeSet::new();
@@ -357,7 +357,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..Default::default() })]
 
     #[test]
-    fn generated_programs_are_read_as_they_were_made(
+    fn generated_programs_are_parsed_into_their_tokens(
         tape in proptest::collection::vec(any::<u8>(), 0..2_000),
         gaps in proptest::collection::vec(any::<u8>(), 1..50),
     ) {

@@ -4,15 +4,17 @@ use std::fmt::Write;
 
 use joulepath::arm::dynamics::{Data, torque};
 use joulepath::arm::kinematics::{fk, ik_near};
-use joulepath::arm::robot::{Model, find, from_toml};
-use joulepath::rapid::text::{FileId, SourceFile};
+use joulepath::arm::robot::{Model, from_toml};
+use joulepath::retime::energy::EnergyParts;
 use joulepath::retime::motion::timeline::{Run, What};
-use joulepath::retime::motion::{Options, Simulation, simulate};
+use joulepath::retime::motion::{Options, Simulation};
+use joulepath::retime::optimize::cost::Cost;
+use joulepath::retime::optimize::freedom::Freedom;
+use joulepath::retime::optimize::retime::Task;
 use joulepath::retime::path::joint_path::{DOF, JointPath, Joints};
-use joulepath::tool::retrofit::{Source, read_program};
 use nalgebra::{Isometry3, Translation3, Vector3};
 
-use crate::support::Random;
+use crate::support::{Random, irb1600, program, simulated};
 
 const NONE: &str = "[9E9,9E9,9E9,9E9,9E9,9E9]";
 /// The geometry of another arm with enlarged and heavier bodies of the IRB1600: the catalogue has
@@ -74,10 +76,23 @@ impl Case {
             _ => None,
         }
     }
+
+    /// The task of a stream for its last run.
+    pub(crate) fn task<'a>(&'a self, freedom: &'a Freedom) -> Task<'a> {
+        Task {
+            model: &self.model,
+            run: self.run(),
+            energy_before: EnergyParts::default(),
+            spacing_s: 0.05,
+            closest_s: 0.04,
+            freedom,
+            cost: Cost::Electrical,
+        }
+    }
 }
 
 pub(crate) fn robots() -> [Model; 2] {
-    [find("IRB1600-10/1.45").unwrap(), from_toml("large.toml", LARGE).unwrap()]
+    [irb1600(), from_toml("large.toml", LARGE).unwrap()]
 }
 
 /// `count` paths with alternating kinds and robots.
@@ -205,11 +220,8 @@ fn draw(random: &mut Random, kind: Kind, model: &Model, name: &str) -> Option<Ca
          {body}ENDPROC\nENDMODULE\n",
         degrees(&start)
     );
-    let file = SourceFile::new(FileId(0), "M.mod".into(), text.into_bytes());
-    let files = [Source { file, relative: "M.mod".into() }];
-    let (program, entry) = read_program(&files, "main").unwrap();
     let mut model = model.clone();
-    let simulation = simulate(&program, entry, &model, &Options::default());
+    let simulation = simulated(&model, &program(text), &Options::default());
     let name = name.to_owned();
     let case = Case { name, kind, model: model.clone(), simulation };
     let usable = case.run().problem.is_none() && case.simulation.unresolved.is_empty();

@@ -10,11 +10,9 @@ mod played;
 mod support;
 
 use cases::{Case, EASY, HARD, Kind, cases};
-use joulepath::retime::energy::EnergyParts;
-use joulepath::retime::optimize::cost::Cost;
 use joulepath::retime::optimize::freedom::{Bound, Freedom};
 use joulepath::retime::optimize::reason::Reason;
-use joulepath::retime::optimize::retime::{Goal, Task, retime};
+use joulepath::retime::optimize::retime::{Goal, retime};
 use rayon::prelude::*;
 
 /// Number of paths of each sort.
@@ -31,21 +29,13 @@ fn is_true(case: &Case, reason: &Reason) -> bool {
 }
 
 #[test]
-fn streams_keep_all_limits_between_their_points_or_say_why_there_is_none() {
+fn streams_keep_all_limits_or_the_refusal_has_a_reason() {
     let all: Vec<Case> = cases(&HARD, COUNT).into_iter().chain(cases(&EASY, COUNT)).collect();
     let freedom = Freedom { joints: Bound::Robot, ..Freedom::none() };
     let results: Vec<(String, bool)> = all
         .par_iter()
         .flat_map(|case| {
-            let task = Task {
-                model: &case.model,
-                run: case.run(),
-                energy_before: EnergyParts::default(),
-                spacing_s: 0.05,
-                closest_s: 0.04,
-                freedom: &freedom,
-                cost: Cost::Electrical,
-            };
+            let task = case.task(&freedom);
             let fastest = retime(&task, Goal::Fastest);
             let least = fastest.as_ref().map_or(case.run().duration(), |found| found.duration_s);
             let thrifty = retime(&task, Goal::Exactly(1.1 * least));

@@ -55,7 +55,7 @@ fn phases(model: &Model, log: &Log, scale: f64, random: &mut fastrand::Rng) -> L
 
 /// The chain of the paper: from seven periods of phase currents to the parameters of table 2.
 #[test]
-fn parameters_come_back_from_phase_currents() {
+fn parameters_are_recovered_from_phase_currents() {
     let model = irb1600();
     let mut random = fastrand::Rng::with_seed(12);
     let truth = log(&model, &series(12), [70.0, 0.005], With::Positions, [0.0, 0.0], &mut random);
@@ -124,7 +124,7 @@ fn sign_and_scale_are_right_in_two_hundred_random_cases() {
 
 /// The marks of a logger are late by half an interval; the motor field determines the shift.
 #[test]
-fn clocks_are_brought_together_by_the_field() {
+fn the_motor_field_synchronises_two_clocks() {
     const LATE: f64 = 0.002;
     const CLOSE: f64 = 1e-4;
     let model = irb1600();
@@ -141,8 +141,8 @@ fn clocks_are_brought_together_by_the_field() {
         }
     }
     let aligned = Aligned { log: late, marks: 4, worst: 0.0, step: 2.0 * LATE };
-    let (found, said) = synchronised(&model, aligned);
-    assert!(said.contains("2.00 ms later"), "{said}");
+    let (found, note) = synchronised(&model, aligned);
+    assert!(note.contains("2.00 ms later"), "{note}");
     let q = |log: &Log| log.column(Channel::Position(0)).unwrap().to_vec();
     let (found_q, both_q) = (q(&found), q(&both));
     for (row, x) in found.rows.iter().zip(&found_q).skip(10).step_by(50) {

@@ -48,7 +48,7 @@ fn fitted(model: &Model, base: &BaseParameters, samples: &Samples, weighting: We
 }
 
 #[test]
-fn data_without_noise_give_the_robot_back() {
+fn noiseless_data_give_the_exact_parameters() {
     let model = irb1600();
     let base = base_parameters(&model);
     let mut random = fastrand::Rng::with_seed(1);
@@ -82,7 +82,7 @@ fn arrays_that_do_not_fit_are_refused() {
 
 /// Ordinary least squares of all rows, by a singular value decomposition.
 #[test]
-fn ordinary_least_squares_are_those_of_a_dense_solver() {
+fn ordinary_least_squares_agree_with_a_dense_solver() {
     let model = irb1600();
     let base = base_parameters(&model);
     let mut random = fastrand::Rng::with_seed(2);
@@ -104,17 +104,7 @@ fn ordinary_least_squares_are_those_of_a_dense_solver() {
     let dense = all.select_columns(&base.independent);
     let expected = dense.svd(true, true).solve(&right, 1e-12).unwrap();
     for (found, expected) in found.solution.beta.iter().zip(expected.iter()) {
-        assert!((found - expected).abs() < EXACT * expected.amax_one(), "{found} {expected}");
-    }
-}
-
-trait AtLeastOne {
-    fn amax_one(&self) -> f64;
-}
-
-impl AtLeastOne for f64 {
-    fn amax_one(&self) -> f64 {
-        self.abs().max(1.0)
+        assert!((found - expected).abs() < EXACT * expected.abs().max(1.0), "{found} {expected}");
     }
 }
 
@@ -139,7 +129,7 @@ fn coverage(runs: u64, simulate: impl Fn(&mut fastrand::Rng) -> Samples) -> (f64
 }
 
 #[test]
-fn intervals_hold_the_truth_with_white_noise() {
+fn intervals_contain_the_truth_with_white_noise() {
     let model = irb1600();
     let motion = series(3);
     let (mean, worst) = coverage(500, |random| {
@@ -150,7 +140,7 @@ fn intervals_hold_the_truth_with_white_noise() {
 }
 
 #[test]
-fn intervals_hold_the_truth_with_coloured_noise_and_repetitions() {
+fn intervals_contain_the_truth_with_coloured_noise_and_repetitions() {
     let model = irb1600();
     let motion = series(4);
     let (mean, worst) = coverage(200, |random| {
@@ -164,7 +154,7 @@ fn intervals_hold_the_truth_with_coloured_noise_and_repetitions() {
 }
 
 #[test]
-fn intervals_hold_the_truth_with_coloured_noise_of_one_run() {
+fn intervals_contain_the_truth_with_coloured_noise_of_one_run() {
     let model = irb1600();
     let motion = series(5);
     let (mean, worst) = coverage(200, |random| {
@@ -176,7 +166,7 @@ fn intervals_hold_the_truth_with_coloured_noise_of_one_run() {
 
 /// The predictions of a model do not change when it is written and read.
 #[test]
-fn an_identified_model_is_written_and_read() {
+fn an_identified_model_is_unchanged_after_writing_and_reading() {
     let model = irb1600();
     let mut random = fastrand::Rng::with_seed(6);
     let log = log(&model, &series(6), [10.0, 0.02], With::Rates, [1.0, 0.0], &mut random);
@@ -184,8 +174,8 @@ fn an_identified_model_is_written_and_read() {
     let found = identify(&model, &samples, &[], &settings(Free::All, Weighting::Joint)).unwrap();
     assert!(found.physically_consistent);
     let read = from_toml("identified.toml", &to_toml(&found.model)).unwrap();
-    let of = |model: &Model| parameters(model, &Load::none());
-    for (a, b) in of(&read).iter().zip(of(&found.model)) {
+    let values = |model: &Model| parameters(model, &Load::none());
+    for (a, b) in values(&read).iter().zip(values(&found.model)) {
         assert!((a - b).abs() < 1e-12, "{a} {b}");
     }
     assert_eq!(read.sensors, found.model.sensors);
@@ -194,7 +184,7 @@ fn an_identified_model_is_written_and_read() {
 }
 
 #[test]
-fn a_joint_that_rests_is_not_determined() {
+fn parameters_of_a_resting_joint_are_not_determined() {
     let model = irb1600();
     let mut motion = series(7);
     for pair in &mut motion.amplitude[3] {
@@ -222,7 +212,7 @@ fn a_joint_that_rests_is_not_determined() {
 /// With the arm at rest, wrist inertias and rotors cannot be separated: the values are sums, and
 /// their names state it.
 #[test]
-fn a_value_is_of_what_its_name_says() {
+fn names_of_combined_parameters_state_their_sum() {
     let model = irb1600();
     let mut motion = series(7);
     for joint in &mut motion.amplitude[..4] {
@@ -283,7 +273,7 @@ fn friction_alone_and_a_payload_are_found() {
 }
 
 #[test]
-fn a_coupled_wrist_is_found_and_a_plain_one_is_not() {
+fn a_wrist_coupling_is_found_only_where_there_is_one() {
     let model = irb1600();
     let mut coupled = model.clone();
     coupled.wrist.coupling = 0.8;

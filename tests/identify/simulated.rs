@@ -44,11 +44,11 @@ pub(crate) fn log(
         }
     }
     let mut channels = vec![Channel::Time];
-    let of = |channel: fn(usize) -> Channel| (0..n).map(channel);
-    channels.extend(of(Channel::Position));
-    channels.extend(of(Channel::Velocity));
-    channels.extend(of(Channel::Acceleration));
-    channels.extend(of(Channel::Torque));
+    let all = |channel: fn(usize) -> Channel| (0..n).map(channel);
+    channels.extend(all(Channel::Position));
+    channels.extend(all(Channel::Velocity));
+    channels.extend(all(Channel::Acceleration));
+    channels.extend(all(Channel::Torque));
     if with == With::Positions {
         values.drain(1 + n..=3 * n);
         channels.drain(1 + n..=3 * n);

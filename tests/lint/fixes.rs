@@ -5,7 +5,7 @@ use joulepath::retime::motion::timeline::What;
 use joulepath::tool::lint::engine::cycles;
 use joulepath::tool::lint::{Applicability, Fixed, fix};
 
-use crate::plants::plants;
+use crate::planted::planted_faults;
 use crate::{Fixture, fixtures};
 
 const UNNEEDED_STOP: &str = "EW101_unneeded_stop_point.mod";
@@ -31,14 +31,14 @@ fn cycle(fixture: &Fixture) -> (f64, Vec<String>, Option<[f64; 6]>) {
 }
 
 fn programs() -> impl Iterator<Item = Fixture> {
-    let planted = plants().into_iter().map(|plant| plant.fixture);
+    let planted = planted_faults().into_iter().map(|planted| planted.fixture);
     fixtures().into_iter().filter(|fixture| fixture.model.is_some()).chain(planted)
 }
 
 /// Fixing twice equals fixing once; the cycle takes no more energy, has the same actions in the
 /// same order, and the same end.
 #[test]
-fn fixes_are_final_and_save() {
+fn fixes_are_idempotent_and_take_no_more_energy() {
     for most in [Applicability::Safe, Applicability::Unsafe] {
         let mut applied_to = 0;
         for fixture in programs() {
@@ -67,28 +67,29 @@ fn fixes_are_final_and_save() {
 
 /// Line ends, tabs and bytes of another encoding do not change.
 #[test]
-fn bytes_that_mean_nothing_stay() {
+fn fixes_keep_line_ends_tabs_and_encoding() {
     let other = |text: &[u8]| -> Vec<u8> {
         let text = String::from_utf8(text.to_vec()).unwrap();
         let text = text.replace("    ", "\t ").replace('\n', "\r\n");
         [b"! caf\xE9\r\n", text.as_bytes()].concat()
     };
-    for plant in plants().into_iter().filter(|plant| plant.name.starts_with("Fires")) {
-        let plain = fix(&plant.fixture.job(), Applicability::Unsafe);
-        let mut fixture = plant.fixture;
+    for planted in planted_faults().into_iter().filter(|planted| planted.name.starts_with("Fires"))
+    {
+        let plain = fix(&planted.fixture.job(), Applicability::Unsafe);
+        let mut fixture = planted.fixture;
         let file = &fixture.files[0];
         fixture.files[0] = SourceFile::new(file.id, file.path.clone(), other(&file.bytes));
         let fixed = fix(&fixture.job(), Applicability::Unsafe);
-        assert_eq!(plain.applied, fixed.applied, "{} {}", plant.code, plant.name);
+        assert_eq!(plain.applied, fixed.applied, "{} {}", planted.code, planted.name);
         let (expected, found) = (other(&plain.files[0].bytes), &fixed.files[0].bytes);
         let show = |bytes: &[u8]| bytes.escape_ascii().to_string();
-        assert_eq!(show(&expected), show(found), "{} {}", plant.code, plant.name);
+        assert_eq!(show(&expected), show(found), "{} {}", planted.code, planted.name);
     }
 }
 
 /// The fix of a stop point changes only the bytes of the zone.
 #[test]
-fn every_other_byte_stays() {
+fn the_fix_of_a_stop_point_changes_only_the_zone() {
     let all = fixtures();
     let mut fixture = all.into_iter().find(|it| it.path.ends_with(UNNEEDED_STOP)).unwrap();
     fixture.settings.select = vec!["EW101".to_owned()];

@@ -47,7 +47,7 @@ fn json_has_the_fields_of_the_contract() {
 
 /// The other formats contain every finding.
 #[test]
-fn all_forms_name_all_findings() {
+fn every_output_format_has_all_findings() {
     for fixture in fixtures() {
         let report = fixture.report();
         let count = report.findings.len();
@@ -80,8 +80,8 @@ fn schema_of_sarif() -> Value {
     let host = about.lines().find_map(|line| line.strip_prefix("host: ")).unwrap();
     let form = ["metadata", "--format-version", "1", "--offline", "--locked"];
     let output = cargo(&[&form[..], &["--filter-platform", host]].concat());
-    let told = String::from_utf8_lossy(&output.stderr);
-    let metadata: Value = serde_json::from_slice(&output.stdout).expect(&told);
+    let reported = String::from_utf8_lossy(&output.stderr);
+    let metadata: Value = serde_json::from_slice(&output.stdout).expect(&reported);
     let packages = metadata["packages"].as_array().unwrap();
     let types = packages.iter().find(|package| package["name"] == "serde-sarif").unwrap();
     let manifest = Path::new(types["manifest_path"].as_str().unwrap());
@@ -90,7 +90,7 @@ fn schema_of_sarif() -> Value {
 }
 
 #[test]
-fn sarif_is_valid_by_the_official_schema() {
+fn sarif_output_is_valid_by_the_official_schema() {
     let schema = schema_of_sarif();
     assert!(schema["$id"].as_str().unwrap().ends_with("sarif-schema-2.1.0.json"));
     assert_known(&schema);
@@ -114,7 +114,7 @@ fn sarif_is_valid_by_the_official_schema() {
 
 /// The fields of a GitLab Code Quality report, with their types and values.
 #[test]
-fn gitlab_is_a_code_quality_report() {
+fn gitlab_output_is_a_code_quality_report() {
     let text = json!({ "type": "string", "minLength": 1 });
     let line = json!({ "type": "integer", "minimum": 1 });
     let lines = json!({ "type": "object", "required": ["begin"], "properties": { "begin": line } });
@@ -147,7 +147,7 @@ fn gitlab_is_a_code_quality_report() {
 
 /// The elements and attributes required by readers of `JUnit` reports, and consistent counts.
 #[test]
-fn junit_is_a_test_report() {
+fn junit_output_is_a_test_report() {
     for fixture in fixtures() {
         let text = junit::junit(&fixture.report(), &fixture.files);
         let document = roxmltree::Document::parse(&text).unwrap();

@@ -7,7 +7,7 @@ mod formats;
 mod hostile;
 mod manuals;
 mod page;
-mod plants;
+mod planted;
 mod savings;
 mod schema;
 
@@ -33,17 +33,17 @@ pub(crate) struct Fixture {
 impl Fixture {
     /// From the name and text of a file: `! robot: NAME`, `! inputs: diA=1 diB=2`.
     pub(crate) fn new(path: PathBuf, text: &str) -> Fixture {
-        Fixture::of(path, &[text.to_owned()])
+        Fixture::from_texts(path, &[text.to_owned()])
     }
 
     /// From the texts of several files; the name is that of the first one.
-    pub(crate) fn of(path: PathBuf, texts: &[String]) -> Fixture {
-        let said = |key: &str| {
+    pub(crate) fn from_texts(path: PathBuf, texts: &[String]) -> Fixture {
+        let setting = |key: &str| {
             let mut lines = texts.iter().flat_map(|text| text.lines());
             lines.find_map(|line| line.trim().strip_prefix(key)).map(str::trim)
         };
-        let model = said("! robot:").map(|name| effects::load(name).unwrap());
-        let inputs = said("! inputs:").unwrap_or_default().split_whitespace().map(|pair| {
+        let model = setting("! robot:").map(|name| effects::load(name).unwrap());
+        let inputs = setting("! inputs:").unwrap_or_default().split_whitespace().map(|pair| {
             let (name, seconds) = pair.split_once('=').unwrap();
             (name.to_lowercase(), seconds.parse().unwrap())
         });
@@ -62,7 +62,7 @@ impl Fixture {
         let others = self.files[1..].iter();
         let others = others.map(|file| String::from_utf8(file.bytes.clone()).unwrap());
         let texts: Vec<String> = std::iter::once(text).chain(others).collect();
-        Fixture::of(self.path.clone(), &texts)
+        Fixture::from_texts(self.path.clone(), &texts)
     }
 
     pub(crate) fn text(&self) -> String {
@@ -111,7 +111,7 @@ pub(crate) fn fixtures() -> Vec<Fixture> {
 
 /// Each rule has a program with findings on the lines with `!~ CODE` and on no other line.
 #[test]
-fn rules_fire_where_marked_and_nowhere_else() {
+fn rules_report_exactly_the_marked_lines() {
     let fixtures = fixtures();
     let mut wrong = Vec::new();
     for rule in ALL.iter().filter(|rule| rule.needs != Needs::Backup) {
@@ -127,9 +127,9 @@ fn rules_fire_where_marked_and_nowhere_else() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// A mark with an unknown rule would never be checked.
+/// The marks in a fixture of an unknown rule would never be checked.
 #[test]
-fn marks_name_rules() {
+fn fixture_names_start_with_the_code_of_a_rule() {
     for fixture in fixtures() {
         let stem = fixture.path.file_stem().unwrap().to_str().unwrap();
         let code = stem.split('_').next().unwrap();
@@ -139,7 +139,7 @@ fn marks_name_rules() {
 
 /// Findings without a robot have no joules, and rules that need a robot are silent.
 #[test]
-fn without_a_robot_nothing_is_weighed() {
+fn findings_without_a_robot_have_no_saving() {
     for mut fixture in fixtures() {
         fixture.model = None;
         for finding in fixture.report().findings {
@@ -151,7 +151,7 @@ fn without_a_robot_nothing_is_weighed() {
 
 /// With a robot, savings below the threshold are not reported.
 #[test]
-fn small_savings_are_not_told() {
+fn savings_below_the_threshold_are_not_reported() {
     for mut fixture in fixtures() {
         fixture.settings.threshold_j = 30.0;
         for finding in fixture.report().findings {
@@ -162,23 +162,23 @@ fn small_savings_are_not_told() {
 
 /// Without a robot, a comment that refers to a rule for robots is not reported as unnecessary.
 #[test]
-fn comments_are_judged_with_what_the_rules_need() {
+fn comments_on_robot_rules_are_accepted_without_a_robot() {
     let all = fixtures();
     let path = all.iter().position(|it| it.path.ends_with("EW001_unused_suppression.mod"));
     let mut fixture = all.into_iter().nth(path.unwrap()).unwrap();
     fixture.model = None;
     let findings = fixture.report().findings;
-    let told: Vec<&str> = findings
+    let reported: Vec<&str> = findings
         .iter()
         .filter(|finding| finding.rule.code == "EW001")
         .map(|finding| finding.message.as_str())
         .collect();
-    assert_eq!(told, ["there is no rule EW999: joulepath rule lists them"]);
+    assert_eq!(reported, ["there is no rule EW999: joulepath rule lists them"]);
 }
 
 /// A program that only moves has no unnecessary movement.
 #[test]
-fn movements_alone_are_a_purpose() {
+fn a_program_of_movements_alone_has_no_unnecessary_movement() {
     let program = |wait: &str| {
         format!(
             "MODULE M
@@ -211,7 +211,7 @@ fn movements_alone_are_a_purpose() {
 
 /// A repeated pose is a home pose only if the program also ends there; a pose on the way is not.
 #[test]
-fn home_is_where_a_program_begins_and_ends() {
+fn a_home_pose_is_at_the_start_and_the_end_of_a_program() {
     let program = |zone: &str, end: &str| {
         format!(
             "MODULE M
@@ -244,7 +244,7 @@ fn home_is_where_a_program_begins_and_ends() {
 
 /// The position before the first movement is assumed, so that the first movement has no findings.
 #[test]
-fn first_movements_are_not_judged() {
+fn the_first_movement_has_no_findings() {
     let text = "MODULE M
         ! robot: IRB1600-10/1.45
         CONST robtarget p1:=[[900,0,1000],[0.5,0,0.866,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];

@@ -33,7 +33,7 @@ fn manuals_have_all_headings_in_order() {
 }
 
 #[test]
-fn codes_are_in_order_and_of_their_families() {
+fn rules_are_sorted_and_have_a_file_each() {
     for pair in ALL.windows(2) {
         assert!(pair[0].code < pair[1].code, "{} before {}", pair[0].code, pair[1].code);
         assert!(pair[0].family <= pair[1].family, "{} before {}", pair[0].code, pair[1].code);
@@ -47,7 +47,7 @@ fn codes_are_in_order_and_of_their_families() {
 }
 
 #[test]
-fn the_page_is_fresh() {
+fn the_lint_page_agrees_with_the_manuals() {
     let fresh = page();
     let written = fs::read_to_string("docs/lints.md").unwrap_or_default();
     if fresh != written {

@@ -4,7 +4,7 @@ use joulepath::rapid::text::{Edit, Span, apply};
 use joulepath::tool::lint::engine::cycles;
 use joulepath::tool::lint::{Applicability, Finding};
 
-use crate::plants::plants;
+use crate::planted::planted_faults;
 use crate::{Fixture, fixtures};
 
 /// Largest difference: as a share of the saving, or in J.
@@ -20,16 +20,16 @@ fn cycle(fixture: &Fixture) -> (f64, f64) {
     (cycle.account.total.energy_j(), cycle.simulation.cycle_s)
 }
 
-fn with(fixture: &Fixture, finding: &Finding) -> Fixture {
+fn with_change(fixture: &Fixture, finding: &Finding) -> Fixture {
     let edits = finding.fix.as_ref().map(|fix| fix.edits.clone());
-    let edits = edits.unwrap_or_else(|| vec![by_hand(fixture, finding)]);
+    let edits = edits.unwrap_or_else(|| vec![manual_change(fixture, finding)]);
     let file = &fixture.files[0];
     let bytes = apply(&file.bytes, &edits).unwrap();
     fixture.with_text(String::from_utf8(bytes).unwrap())
 }
 
 /// The change that the message proposes, as a reader would make it.
-fn by_hand(fixture: &Fixture, finding: &Finding) -> Edit {
+fn manual_change(fixture: &Fixture, finding: &Finding) -> Edit {
     let file = &fixture.files[0];
     let span = finding.span;
     let statement = file.text(span).into_owned();
@@ -65,21 +65,26 @@ fn by_hand(fixture: &Fixture, finding: &Finding) -> Edit {
 }
 
 #[test]
-fn savings_are_those_of_two_simulations() {
+fn savings_agree_with_two_simulations() {
     let mut compared = std::collections::BTreeSet::new();
-    let planted = plants().into_iter().map(|plant| plant.fixture);
+    let planted = planted_faults().into_iter().map(|planted| planted.fixture);
     let weighed = fixtures().into_iter().filter(|fixture| fixture.model.is_some());
     for fixture in weighed.chain(planted) {
         let (energy, time) = cycle(&fixture);
         for finding in fixture.report().findings {
             let Some(saving) = finding.saving else { continue };
-            let (energy_after, time_after) = cycle(&with(&fixture, &finding));
+            let (energy_after, time_after) = cycle(&with_change(&fixture, &finding));
             let spared = energy - energy_after;
             let off = (spared - saving.energy_j).abs();
-            let told = finding.full_message();
-            assert!(off <= JOULES.max(SHARE * spared.abs()), "{spared} J: {told}");
+            let reported = finding.full_message();
+            assert!(off <= JOULES.max(SHARE * spared.abs()), "{spared} J: {reported}");
             let late = (time - time_after - saving.time_s).abs();
-            assert!(late <= SECONDS, "{} s, told {} s: {told}", time - time_after, saving.time_s);
+            assert!(
+                late <= SECONDS,
+                "{} s, reported {} s: {reported}",
+                time - time_after,
+                saving.time_s
+            );
             assert!(saving.low_j <= saving.energy_j && saving.energy_j <= saving.high_j);
             compared.insert(finding.rule.code);
         }
@@ -98,7 +103,7 @@ fn savings_are_those_of_two_simulations() {
 
 /// Only changes of comments are safe without review.
 #[test]
-fn only_a_comment_is_fixed_safely() {
+fn only_fixes_of_comments_are_safe() {
     let all = fixtures();
     let findings = all.iter().flat_map(|fixture| fixture.report().findings);
     for finding in findings {
@@ -109,8 +114,8 @@ fn only_a_comment_is_fixed_safely() {
 
 /// The lift after a grip looks like a trip home, and a drilled hole like a line with a stop.
 #[test]
-fn what_may_be_the_process_has_no_fix() {
-    let planted = plants().into_iter().map(|plant| plant.fixture);
+fn findings_that_may_be_process_steps_have_no_fix() {
+    let planted = planted_faults().into_iter().map(|planted| planted.fixture);
     let mut found = std::collections::BTreeSet::new();
     for fixture in fixtures().into_iter().chain(planted) {
         for finding in fixture.report().findings {
@@ -127,7 +132,7 @@ fn what_may_be_the_process_has_no_fix() {
 /// The load during a wait is that of the movement before, even if that movement is outside the
 /// recomputed part of the cycle.
 #[test]
-fn waits_behind_a_movement_that_is_left_out_cost_the_same() {
+fn leaving_out_a_movement_keeps_the_load_of_the_next_wait() {
     let text = "MODULE M
         ! robot: IRB1600-10/1.45
         PERS tooldata tHeavy:=[TRUE,[[0,0,100],[1,0,0,0]],[9,[0,0,80],[1,0,0,0],0.1,0.1,0.1]];

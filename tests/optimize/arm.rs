@@ -193,11 +193,11 @@ pub(crate) fn rest_to_rest_nodes(length: f64, n: usize) -> Vec<f64> {
 /// The path on n intervals, denser towards the ends, with nodes at reversals of a joint; values
 /// from inside each interval.
 pub(crate) fn grid(path: &Path, n: usize, friction: f64) -> PathGrid {
-    with_turns(path, rest_to_rest_nodes(path.length, n), friction)
+    with_reversals(path, rest_to_rest_nodes(path.length, n), friction)
 }
 
 /// The path on the given nodes and at reversals of a joint.
-pub(crate) fn with_turns(path: &Path, mut s: Vec<f64>, friction: f64) -> PathGrid {
+pub(crate) fn with_reversals(path: &Path, mut s: Vec<f64>, friction: f64) -> PathGrid {
     let n = s.len() - 1;
     for k in 0..n {
         for j in 0..DOF {

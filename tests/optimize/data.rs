@@ -51,16 +51,16 @@ fn wrong_limits_are_refused() {
 #[test]
 fn wrong_references_are_refused() {
     let q = [0.0; DOF];
-    let of = |t: &[f64]| Reference::new(t.to_vec(), vec![q; t.len()], vec![q; t.len()]);
-    assert_eq!(of(&[0.0]), Err(ReferenceError::Lengths));
-    assert_eq!(of(&[0.1, 0.2]), Err(ReferenceError::Time(0)));
-    assert_eq!(of(&[0.0, 0.2, 0.2]), Err(ReferenceError::Time(2)));
+    let reference = |t: &[f64]| Reference::new(t.to_vec(), vec![q; t.len()], vec![q; t.len()]);
+    assert_eq!(reference(&[0.0]), Err(ReferenceError::Lengths));
+    assert_eq!(reference(&[0.1, 0.2]), Err(ReferenceError::Time(0)));
+    assert_eq!(reference(&[0.0, 0.2, 0.2]), Err(ReferenceError::Time(2)));
     let nan = Reference::new(vec![0.0, 1.0], vec![q, [f64::NAN; DOF]], vec![q; 2]);
     assert_eq!(nan, Err(ReferenceError::Value(1)));
 }
 
 #[test]
-fn a_profile_is_evaluated_as_it_integrates() {
+fn a_profile_agrees_with_its_integration() {
     const STEPS: usize = 100_000;
     const TOLERANCE: f64 = 1e-6;
     let s = arm::rest_to_rest_nodes(2.0, 9);
@@ -82,7 +82,7 @@ fn a_profile_is_evaluated_as_it_integrates() {
 }
 
 #[test]
-fn energies_of_a_known_motion() {
+fn energies_of_a_known_motion_are_exact() {
     // Constant acceleration a up to the middle and back: v = √(2 a s); m, f and k of one joint.
     let (length, a, m, f, k) = (2.0f64, 0.8f64, 3.0f64, 4.0f64, 0.05f64);
     let grid = single_joint(length, 40, 1e3, m, f);
@@ -147,28 +147,28 @@ fn the_unit_of_the_path_does_not_matter() {
 }
 
 #[test]
-fn unlimited_time_ends_where_slowness_costs() {
+fn unlimited_time_gives_a_finite_optimal_duration() {
     // Copper losses of holding give an optimal duration.
     let grid = arm::grid(&arm::Path::random(2), 40, 1.0);
     let fastest = time_optimal(&grid, &arm::limits()).into_profile().unwrap();
-    let of = |time: f64| {
+    let optimum = |time: f64| {
         let outcome = arm::least_energy(&grid, &arm::limits(), &MODEL, &fastest, time);
         outcome.into_optimum().unwrap()
     };
-    let (enough, endless) = (of(20.0 * fastest.duration()), of(f64::INFINITY));
+    let (enough, endless) = (optimum(20.0 * fastest.duration()), optimum(f64::INFINITY));
     assert!(enough.profile.duration() < 10.0 * fastest.duration());
-    assert!(enough.energy.total() < of(1.2 * fastest.duration()).energy.total());
+    assert!(enough.energy.total() < optimum(1.2 * fastest.duration()).energy.total());
     assert!(endless.energy.total() < 1.01 * enough.energy.total());
 }
 
 #[test]
-fn short_and_long_moves_solve() {
+fn short_parts_of_a_path_are_solved() {
     let limits = arm::limits();
     for seed in 0..6 {
         let path = arm::Path::random(seed);
         for share in [1e-4, 1e-3, 1e-2, 0.1] {
             let s: Vec<f64> = arm::rest_to_rest_nodes(share * path.length, 40);
-            let grid = arm::with_turns(&path, s, 1.0);
+            let grid = arm::with_reversals(&path, s, 1.0);
             let fastest = time_optimal(&grid, &limits).into_profile().unwrap();
             let time = 1.3 * fastest.duration();
             let outcome = arm::least_energy(&grid, &limits, &MODEL, &fastest, time);
@@ -181,7 +181,7 @@ fn short_and_long_moves_solve() {
 }
 
 #[test]
-fn arbitrary_numbers_end_in_a_status() {
+fn arbitrary_grids_are_solved_or_infeasible() {
     let mut random = arm::Random::new(11);
     let (mut solved, mut refused) = (0, 0);
     for _ in 0..200 {

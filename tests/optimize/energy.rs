@@ -49,7 +49,7 @@ fn free() -> PathLimits {
 }
 
 #[test]
-fn copper_alone_gives_the_parabola_of_speed() {
+fn copper_losses_alone_give_a_parabolic_speed() {
     let (length, time, m, k) = (1.7, 1.3, 3.0, 0.02);
     let grid = single_joint(length, 200, 1e3, m, 0.0);
     let best = converged(&grid, &free(), &first_joint(k), |_| time);
@@ -68,7 +68,7 @@ fn copper_alone_gives_the_parabola_of_speed() {
 }
 
 #[test]
-fn copper_with_viscous_friction_is_a_linear_quadratic_problem() {
+fn copper_losses_with_viscous_friction_are_a_linear_quadratic_problem() {
     let (length, time, m, k, f) = (1.7f64, 1.3f64, 3.0f64, 0.02f64, 4.0f64);
     let grid = single_joint(length, 200, 1e3, m, f);
     let best = converged(&grid, &free(), &first_joint(k), |_| time);
@@ -212,7 +212,7 @@ fn the_bound_of_a_coarse_grid_holds_for_a_fine_one() {
 }
 
 #[test]
-fn the_marginal_is_the_slope_of_energy_over_time() {
+fn the_marginal_value_is_the_slope_of_energy_over_time() {
     const STEP: f64 = 0.01;
     let limits = arm::limits();
     for seed in 0..5 {
@@ -262,7 +262,7 @@ fn a_time_just_above_the_fastest_gives_a_verified_profile() {
 }
 
 #[test]
-fn every_profile_in_the_time_lies_in_the_range_of_speeds() {
+fn profiles_of_a_duration_lie_in_its_speed_range() {
     const ROUNDING: f64 = 1e-9;
     let limits = arm::limits();
     let mut narrow = Vec::new();

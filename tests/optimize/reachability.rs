@@ -21,7 +21,7 @@ fn optimal(grid: &PathGrid, limits: &PathLimits) -> Profile {
 }
 
 #[test]
-fn triangle_of_a_double_integrator() {
+fn the_fastest_profile_of_a_double_integrator_is_a_triangle() {
     let mut acceleration = FREE;
     acceleration[0] = 2.0;
     let limits = PathLimits::new(acceleration, FREE).unwrap();
@@ -31,7 +31,7 @@ fn triangle_of_a_double_integrator() {
 }
 
 #[test]
-fn trapezoid_of_a_double_integrator() {
+fn the_fastest_profile_with_a_speed_limit_is_a_trapezoid() {
     let mut torque = FREE;
     torque[0] = 6.0;
     let limits = PathLimits::new(FREE, torque).unwrap();
@@ -41,7 +41,7 @@ fn trapezoid_of_a_double_integrator() {
 }
 
 #[test]
-fn viscous_friction_slows_as_the_differential_equation_says() {
+fn viscous_friction_slows_according_to_the_differential_equation() {
     // m v̇ = L − f v while driving and −L − f v while braking; the speeds meet at v*. Constraints
     // at both ends cost half a step of friction on each interval.
     const TOLERANCE: f64 = 1e-3;
@@ -107,7 +107,7 @@ fn no_small_change_is_faster() {
 }
 
 #[test]
-fn tight_torque_fails_only_where_the_arm_cannot_hold_itself() {
+fn tight_torques_are_infeasible_only_where_the_arm_cannot_hold_itself() {
     let mut infeasible = 0;
     for share in [0.7, 0.55, 0.45] {
         let loose = arm::limits();
@@ -135,7 +135,7 @@ fn dense_ends_halve_the_loss_of_a_coarse_grid() {
         let path = arm::Path::random(seed);
         let fine = optimal(&arm::grid(&path, 3000, 1.0), &arm::limits()).duration();
         let equal = (0..=100).map(|k| path.length * f64::from(k) / 100.0).collect();
-        let grids = [arm::with_turns(&path, equal, 1.0), arm::grid(&path, 100, 1.0)];
+        let grids = [arm::with_reversals(&path, equal, 1.0), arm::grid(&path, 100, 1.0)];
         for (excess, grid) in excess.iter_mut().zip(&grids) {
             excess.push(optimal(grid, &arm::limits()).duration() / fine - 1.0);
         }

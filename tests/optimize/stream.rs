@@ -57,7 +57,7 @@ fn smooth(duration: f64) -> Reference {
 }
 
 #[test]
-fn the_motion_of_a_stream_is_met_by_its_own_points() {
+fn fitting_the_motion_of_a_stream_recovers_its_points() {
     const EXACT: f64 = 1e-7;
     let intervals = vec![0.08, 0.05, 0.06, 0.09, 0.07, 0.05, 0.1];
     let point = |i: usize| std::array::from_fn(|j| (0.5 * i as f64 + j as f64).sin());
@@ -106,25 +106,25 @@ fn limits_are_kept_or_the_time_is_refused() {
     let reference = smooth(0.6);
     let intervals = || vec![0.05; 12];
     let free = fitted(fit_stream(&reference, intervals(), &FREE, &LEVER).unwrap()).stream;
-    let of = |share: f64| StreamLimits {
+    let scaled = |share: f64| StreamLimits {
         velocity: free.max_velocity().map(|v| v.max(1e-3) * share),
         acceleration: free.max_acceleration().map(|a| a.max(1e-3) * share),
         jerk: free.max_jerk().map(|j| j.max(1e-3) * share),
     };
     // Slightly lower limits are possible with another timing.
-    let tight = of(0.97);
+    let tight = scaled(0.97);
     assert!(tight.worst_ratio(&free) > 1.02);
     let fit = fitted(fit_stream(&reference, intervals(), &tight, &LEVER).unwrap());
     assert!(tight.worst_ratio(&fit.stream) <= 1.0);
     assert!(fit.lag > 1e-3 && fit.deviation < 0.3 * fit.lag, "{} {}", fit.lag, fit.deviation);
     // Half of the limits is possible only with the computed stretch.
-    let impossible = of(0.5);
+    let impossible = scaled(0.5);
     let refused = fit_stream(&reference, intervals(), &impossible, &LEVER).unwrap();
     let StreamFit::TooFast { stretch } = refused else { panic!("{refused:?}") };
     let slower = intervals().iter().map(|d| d * stretch * 1.0001).collect();
     fitted(fit_stream(&reference, slower, &impossible, &LEVER).unwrap());
     let faster = intervals().iter().map(|d| d * 0.5 * (1.0 + stretch)).collect();
-    let refused = fit_stream(&reference, faster, &of(0.4), &LEVER).unwrap();
+    let refused = fit_stream(&reference, faster, &scaled(0.4), &LEVER).unwrap();
     assert!(matches!(refused, StreamFit::TooFast { .. }));
 }
 
@@ -173,7 +173,7 @@ fn intervals_follow_the_third_derivative() {
 }
 
 #[test]
-fn the_tolerance_is_met_by_the_spacing_that_is_made_for_it() {
+fn the_adaptive_spacing_meets_its_tolerance() {
     let reference = smooth(1.0);
     for tolerance in [1e-3, 1e-4, 1e-5] {
         let spacing = Spacing { shortest: 0.02, tolerance, ..Spacing::default() };
@@ -185,13 +185,13 @@ fn the_tolerance_is_met_by_the_spacing_that_is_made_for_it() {
 }
 
 #[test]
-fn the_polygon_of_the_points_is_as_near_as_the_spacing_was_asked_for() {
+fn the_polygon_of_the_points_keeps_the_requested_distance() {
     // Two joints on a quarter circle: the polygon lies outside it.
     let circle = |t: f64| {
         let (angle, speed) = (t - (TAU * t).sin() / TAU, 1.0 - (TAU * t).cos());
         let (q, qd) = (angle * FRAC_PI_2, speed * FRAC_PI_2);
-        let of = |a: f64, b: f64| std::array::from_fn(|j| [a, b, 0.0, 0.0, 0.0, 0.0][j]);
-        (of(q.cos(), q.sin()), of(-q.sin() * qd, q.cos() * qd))
+        let joints = |a: f64, b: f64| std::array::from_fn(|j| [a, b, 0.0, 0.0, 0.0, 0.0][j]);
+        (joints(q.cos(), q.sin()), joints(-q.sin() * qd, q.cos() * qd))
     };
     let reference = Reference::sample(1.0, 2000, circle).unwrap();
     let farthest = |polygon: f64| {
@@ -250,7 +250,7 @@ const BUS: EnergyModel = EnergyModel {
 };
 
 #[test]
-fn polished_streams_realise_most_of_the_promised_saving() {
+fn polished_streams_realise_most_of_the_predicted_saving() {
     const CORRIDOR: PathPenalty = PathPenalty { tolerance: 1e-3, lever: LEVER };
     let mut shares = Vec::new();
     for seed in 0..10 {
@@ -324,7 +324,7 @@ impl Plant for Flywheel {
 }
 
 #[test]
-fn copper_alone_gives_the_parabola_of_speed_in_the_points() {
+fn copper_losses_alone_give_a_stream_with_parabolic_speed() {
     // The spline has n free speeds: its error of 12 k m² L²/T³ is O(1/n²).
     const SPLINE: f64 = 0.01;
     let (length, time, m, k) = (1.7, 1.3, 3.0, 0.02);

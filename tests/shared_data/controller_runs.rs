@@ -9,14 +9,12 @@ use std::path::Path;
 use flate2::read::GzDecoder;
 use joulepath::arm::kinematics::fk;
 use joulepath::arm::robot::{Model, find};
-use joulepath::rapid::text::{FileId, SourceFile};
+use joulepath::retime::motion::Options;
 use joulepath::retime::motion::timeline::{Run, What};
-use joulepath::retime::motion::{Options, simulate};
-use joulepath::tool::retrofit::{Source, read_program};
 use nalgebra::Vector3;
 use serde_json::Value;
 
-use super::shared;
+use super::{shared, support};
 
 /// The virtual controller logs ticks of 4 ms for periods of 4.032 ms.
 const VIRTUAL_CLOCK: f64 = 1.008;
@@ -179,10 +177,7 @@ fn logged(summary: &str) -> Vec<Logged> {
 
 /// The runs of the simulated program after the approach, each with its start, s.
 fn simulated(model: &Model, text: &str) -> Vec<(f64, Run)> {
-    let file = SourceFile::new(FileId(0), "Logged.mod".into(), text.into());
-    let files = [Source { file, relative: "Logged.mod".into() }];
-    let (program, entry) = read_program(&files, "main").unwrap();
-    let simulation = simulate(&program, entry, model, &Options::default());
+    let simulation = support::simulated(model, &support::program(text), &Options::default());
     assert!(simulation.unresolved.is_empty(), "{:?}", simulation.unresolved);
     let runs = simulation.events.into_iter().filter_map(|event| match event.what {
         What::Run(run) if event.duration > 0.0 => Some((event.t_start, *run)),
@@ -321,7 +316,7 @@ fn table(compared: &[Compared]) {
 }
 
 #[test]
-fn logged_runs_of_an_irc5() {
+fn simulated_runs_agree_with_logged_runs_of_an_irc5() {
     let Some(programs) = shared("controller_runs/programs.json") else { return };
     let Some(summary) = shared("controller_runs/summary.csv") else { return };
     let programs: Value = serde_json::from_str(&programs).unwrap();
@@ -359,8 +354,8 @@ fn logged_runs_of_an_irc5() {
             );
         }
     }
-    let of = |real: bool| figures(compared.iter().filter(|c| c.logged.real == real));
-    for (f, limits) in [(of(false), VIRTUAL), (of(true), REAL)] {
+    let errors = |real: bool| figures(compared.iter().filter(|c| c.logged.real == real));
+    for (f, limits) in [(errors(false), VIRTUAL), (errors(true), REAL)] {
         assert!(f.median <= limits.median && f.p90 <= limits.p90, "{} % {} %", f.median, f.p90);
         assert!(f.worst <= limits.worst, "{} %", f.worst);
         assert!(f.corners.0 as f64 <= limits.corners * f.corners.1 as f64, "{:?}", f.corners);

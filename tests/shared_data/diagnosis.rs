@@ -10,7 +10,7 @@ const MISSED: [f64; 2] = [1.4, 1.0];
 const HALVED: f64 = 0.5;
 
 /// The diagnosis of a robot, if its files exist.
-fn of(robot: &RealRobot) -> Option<Diagnosis> {
+fn diagnosis_of(robot: &RealRobot) -> Option<Diagnosis> {
     let (urdf, csv) = (super::shared(robot.urdf)?, super::shared(robot.csv)?);
     let found = diagnosed(robot, &urdf, &csv, Trust::Commissioned);
     let rms =
@@ -28,8 +28,8 @@ fn of(robot: &RealRobot) -> Option<Diagnosis> {
 }
 
 #[test]
-fn the_coupled_wrist_of_a_tx40_is_named() {
-    let Some(found) = of(&TX40) else { return };
+fn the_coupled_wrist_of_a_tx40_is_found() {
+    let Some(found) = diagnosis_of(&TX40) else { return };
     assert_eq!(named(&found), ["wrist_coupling"]);
     for (joint, most) in [4, 5].into_iter().zip(MISSED) {
         let missed = found.shrink.joints[joint].refit_plus_effect;
@@ -38,8 +38,8 @@ fn the_coupled_wrist_of_a_tx40_is_named() {
 }
 
 #[test]
-fn friction_of_a_ur10_that_grows_with_speed_is_named() {
-    let Some(found) = of(&UR10) else { return };
+fn speed_dependent_friction_of_a_ur10_is_found() {
+    let Some(found) = diagnosis_of(&UR10) else { return };
     assert_eq!(named(&found), ["stribeck"]);
     let first = &found.shrink.joints[0];
     assert!(first.refit_plus_effect < HALVED * first.model, "{first:?}");
@@ -47,6 +47,6 @@ fn friction_of_a_ur10_that_grows_with_speed_is_named() {
 
 #[test]
 fn a_panda_has_no_effect() {
-    let Some(found) = of(&PANDA) else { return };
+    let Some(found) = diagnosis_of(&PANDA) else { return };
     assert!(named(&found).is_empty(), "{:?}", named(&found));
 }

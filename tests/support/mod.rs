@@ -9,9 +9,11 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use joulepath::arm::robot::{Model, find};
 use joulepath::rapid::syntax::{self, Element, Parse};
 use joulepath::rapid::text::{FileId, SourceFile};
-use joulepath::tool::retrofit::Source;
+use joulepath::retime::motion::{Options, Simulation, simulate};
+use joulepath::tool::retrofit::{Source, read_program};
 
 /// Largest number of inspections of a token, per token: constant for any input.
 const STEPS_PER_TOKEN: u64 = 8;
@@ -32,19 +34,49 @@ pub(crate) fn fixtures(folder: &str) -> Vec<(String, Vec<u8>)> {
     paths.into_iter().map(read).collect()
 }
 
-/// The modules of a program in a folder of `fixtures`.
-pub(crate) fn modules(folder: &str) -> Vec<Source> {
+/// A robot of the catalogue with published dynamics.
+pub(crate) fn irb1600() -> Model {
+    find("IRB1600-10/1.45").unwrap()
+}
+
+/// The paths of the modules in a folder of `fixtures`, sorted.
+pub(crate) fn module_paths(folder: &str) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(folder);
     let mut paths: Vec<PathBuf> =
         std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.retain(|path| path.extension().is_some_and(|e| e == "mod" || e == "sys"));
     paths.sort();
-    let source = |(i, path): (usize, PathBuf)| {
-        let shown = path.display().to_string();
-        let file = SourceFile::new(FileId(i as u32), shown, std::fs::read(path).unwrap());
-        Source { relative: file.path.clone(), file }
+    paths
+}
+
+/// The program in a folder of `fixtures`.
+pub(crate) fn modules(folder: &str) -> Vec<Source> {
+    read(&module_paths(folder))
+}
+
+/// A program of the files with these paths.
+pub(crate) fn read(paths: &[PathBuf]) -> Vec<Source> {
+    let file = |(i, path): (usize, &PathBuf)| {
+        let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+        SourceFile::new(FileId(i as u32), name, std::fs::read(path).unwrap())
     };
-    paths.into_iter().enumerate().map(source).collect()
+    sources(paths.iter().enumerate().map(file).collect())
+}
+
+/// A program of these files.
+pub(crate) fn sources(files: Vec<SourceFile>) -> Vec<Source> {
+    files.into_iter().map(|file| Source { relative: file.path.clone(), file }).collect()
+}
+
+/// A program of one module.
+pub(crate) fn program(text: impl Into<Vec<u8>>) -> Vec<Source> {
+    sources(vec![SourceFile::new(FileId(0), "M.mod".to_owned(), text.into())])
+}
+
+/// Simulates the routine `main` of a program.
+pub(crate) fn simulated(model: &Model, files: &[Source], options: &Options) -> Simulation {
+    let (program, entry) = read_program(files, "main").unwrap();
+    simulate(&program, entry, model, options)
 }
 
 /// The path of a folder of `fixtures/syntax`.

@@ -1,5 +1,11 @@
 //! Public logs of real robots: training part, held-out part, and the model without the effect.
 
+#![allow(
+    dead_code,
+    clippy::allow_attributes,
+    reason = "each user takes its part of this module; an expectation would fail in the others"
+)]
+
 use std::fmt::Write as _;
 use std::ops::Range;
 
@@ -47,7 +53,10 @@ pub(crate) const PANDA: RealRobot = RealRobot {
 pub(crate) fn diagnosed(robot: &RealRobot, urdf: &str, csv: &str, trust: Trust) -> Diagnosis {
     let text = import_urdf(robot.urdf, urdf).unwrap();
     let bare = from_toml(robot.urdf, &text).unwrap();
-    let [first, last] = parts(&bare, csv, robot);
+    let log = log(&bare, csv, robot);
+    let count = log.time().len();
+    let cut = (TRAINED * count as f64) as usize;
+    let [first, last] = split(&bare, &log, [0..cut, cut..count]);
     let nominal = nominal(&bare, &first);
     let settings = Settings { trust, effects: ALL.iter().collect() };
     let held = Record::all(&nominal, &last);
@@ -56,11 +65,11 @@ pub(crate) fn diagnosed(robot: &RealRobot, urdf: &str, csv: &str, trust: Trust) 
 
 /// Ids of the asserted effects.
 pub(crate) fn named(found: &Diagnosis) -> Vec<&'static str> {
-    found.effects.iter().map(|said| said.effect.id).collect()
+    found.effects.iter().map(|asserted| asserted.effect.id).collect()
 }
 
-/// Both parts of a log: training and held-out.
-fn parts(model: &Model, csv: &str, robot: &RealRobot) -> [Samples; 2] {
+/// The log in a robot's file.
+pub(crate) fn log(model: &Model, csv: &str, robot: &RealRobot) -> Log {
     let mut map = String::from("t=t_s");
     for joint in 1..=model.dof {
         let _ = write!(map, ",q{joint}=q_rad_{joint},tau{joint}=tau_Nm_{joint}");
@@ -68,22 +77,19 @@ fn parts(model: &Model, csv: &str, robot: &RealRobot) -> [Samples; 2] {
             let _ = write!(map, ",qd{joint}=qd_rad_s_{joint}");
         }
     }
-    let log = read_csv(csv.as_bytes(), &ColumnMap::parse(&map).unwrap()).unwrap();
-    let cut = (TRAINED * log.time().len() as f64) as usize;
-    let rows = |range: Range<usize>| Log {
-        channels: log.channels.clone(),
-        values: log.values.iter().map(|x| x[range.clone()].to_vec()).collect(),
-        rows: log.rows[range].to_vec(),
-        rejected: Vec::new(),
-        degrees: Vec::new(),
+    read_csv(csv.as_bytes(), &ColumnMap::parse(&map).unwrap()).unwrap()
+}
+
+/// The samples in two parts of a log: for training and held out.
+pub(crate) fn split(model: &Model, log: &Log, [first, last]: [Range<usize>; 2]) -> [Samples; 2] {
+    let samples = |range: Range<usize>, hints| {
+        let log = log.of_rows(&range.collect::<Vec<_>>());
+        prepare(&log, &torques(model, &log).unwrap().tau, hints).unwrap()
     };
-    let samples =
-        |log: &Log, hints| prepare(log, &torques(model, log).unwrap().tau, hints).unwrap();
-    let first = samples(&rows(0..cut), Hints::default());
-    let Source::Filtered { cutoff } = first.source else { panic!("{:?}", first.source) };
-    let hints = Hints { period: None, cutoff: Some(cutoff) };
-    let last = samples(&rows(cut..log.time().len()), hints);
-    [first, last]
+    let training = samples(first, Hints::default());
+    let Source::Filtered { cutoff } = training.source else { panic!("{:?}", training.source) };
+    let held_out = samples(last, Hints { period: None, cutoff: Some(cutoff) });
+    [training, held_out]
 }
 
 /// The model identified from the first part, without a wrist coupling.

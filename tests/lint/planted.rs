@@ -11,27 +11,27 @@ use crate::Fixture;
 const EACH: usize = 3;
 
 /// A module of a file of `fixtures/lint/plants`, with the data that all of them share.
-pub(crate) struct Plant {
+pub(crate) struct PlantedFault {
     pub(crate) code: String,
     pub(crate) name: String,
     pub(crate) fixture: Fixture,
 }
 
-impl Plant {
+impl PlantedFault {
     fn fires(&self) -> bool {
         self.name.starts_with("Fires")
     }
 }
 
-/// All plants. A file has a module with its own `main` for each; the lines of the other modules are
-/// empty.
-pub(crate) fn plants() -> Vec<Plant> {
+/// All planted faults and near misses. A file has a module with its own `main` for each; the lines
+/// of the other modules are empty.
+pub(crate) fn planted_faults() -> Vec<PlantedFault> {
     let folder = "fixtures/lint/plants";
     let shared = fs::read_to_string(format!("{folder}/Shared.mod")).unwrap();
     let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     let mut paths: Vec<_> = entries.filter(|path| !path.ends_with("Shared.mod")).collect();
     paths.sort();
-    let mut plants = Vec::new();
+    let mut faults = Vec::new();
     for path in paths {
         let text = fs::read_to_string(&path).unwrap();
         let code = path.file_stem().unwrap().to_str().unwrap().to_owned();
@@ -47,39 +47,41 @@ pub(crate) fn plants() -> Vec<Plant> {
                 own.push('\n');
                 inside &= line != "ENDMODULE";
             }
-            let fixture = Fixture::of(path.clone(), &[own, shared.clone()]);
-            plants.push(Plant { code: code.clone(), name: name.to_owned(), fixture });
+            let fixture = Fixture::from_texts(path.clone(), &[own, shared.clone()]);
+            faults.push(PlantedFault { code: code.clone(), name: name.to_owned(), fixture });
         }
     }
-    plants
+    faults
 }
 
 #[test]
-fn plants_are_found_and_near_misses_are_not() {
+fn planted_faults_are_found_and_near_misses_are_not() {
     let mut wrong = Vec::new();
-    for plant in plants() {
-        let (marked, found) = plant.fixture.marked_and_found(&plant.code);
-        if marked != found || marked.is_empty() == plant.fires() {
-            wrong
-                .push(format!("{} {}: marked {marked:?}, found {found:?}", plant.code, plant.name));
+    for planted in planted_faults() {
+        let (marked, found) = planted.fixture.marked_and_found(&planted.code);
+        if marked != found || marked.is_empty() == planted.fires() {
+            wrong.push(format!(
+                "{} {}: marked {marked:?}, found {found:?}",
+                planted.code, planted.name
+            ));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Fails for a removed rule, or a new one without plants; `tests/lint_command.rs` has the plants of
+/// Fails for a removed rule, or a new one without planted faults; `tests/lint_command.rs` has those of
 /// rules for backups.
 #[test]
-fn each_rule_has_plants_and_near_misses() {
+fn each_rule_has_planted_faults_and_near_misses() {
     let mut counts: BTreeMap<(String, bool), usize> = BTreeMap::new();
-    for plant in plants() {
-        assert!(find(&plant.code).is_some(), "no rule {}", plant.code);
-        *counts.entry((plant.code.clone(), plant.fires())).or_default() += 1;
+    for planted in planted_faults() {
+        assert!(find(&planted.code).is_some(), "no rule {}", planted.code);
+        *counts.entry((planted.code.clone(), planted.fires())).or_default() += 1;
     }
     for rule in ALL.iter().filter(|rule| rule.needs != Needs::Backup) {
         for fires in [true, false] {
             let count = counts.get(&(rule.code.to_owned(), fires)).copied().unwrap_or(0);
-            assert!(count >= EACH, "{}: {count} plants that fire: {fires}", rule.code);
+            assert!(count >= EACH, "{}: {count} programs that fire: {fires}", rule.code);
         }
     }
     let backup = ALL.iter().filter(|rule| rule.needs == Needs::Backup).map(|rule| rule.code);
