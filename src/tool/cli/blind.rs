@@ -4,14 +4,13 @@ mod family;
 
 use std::fmt::Write as _;
 use std::fs;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, bail};
 use clap::{Args, Subcommand};
 use rayon::prelude::*;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use self::family::family;
 use super::common::{self, Format};
@@ -27,7 +26,7 @@ use crate::tool::report::html::grades_report;
     after_help = "Example: joulepath blind generate --out cases --seed 7 --count 20\n         \
     joulepath blind grade cases --format json"
 )]
-pub struct BlindArgs {
+pub(super) struct BlindArgs {
     #[command(subcommand)]
     command: BlindCommand,
 }
@@ -96,11 +95,7 @@ struct GradeArgs {
 /// Permitted periods of the generated motions \[s\].
 const PERIODS_S: [f64; 2] = [2.0, 60.0];
 
-/// Runs the command.
-///
-/// # Errors
-/// Cases cannot be written or read, or a seal does not match.
-pub fn run(args: &BlindArgs) -> anyhow::Result<ExitCode> {
+pub(super) fn run(args: &BlindArgs) -> anyhow::Result<ExitCode> {
     match &args.command {
         BlindCommand::Generate(args) => generate(args),
         BlindCommand::Grade(args) => grade(args),
@@ -194,12 +189,7 @@ fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {
         let page = grades_report(&grades)?;
         output::write(path, page.as_bytes()).with_context(|| path.display().to_string())?;
     }
-    let text = match args.format {
-        Format::Json => serde_json::to_string_pretty(&grades)? + "\n",
-        Format::Text => table(&grades),
-    };
-    std::io::stdout().lock().write_all(text.as_bytes())?;
-    Ok(ExitCode::SUCCESS)
+    common::print(args.format, || json!(grades), || table(&grades))
 }
 
 /// The effects that are left out for a case; empty if the case is not graded.

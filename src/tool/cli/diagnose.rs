@@ -31,7 +31,7 @@ use crate::tool::report::html::diagnose_report;
 #[command(
     after_help = "Example: joulepath diagnose --robot nominal.toml --log run1.csv run2.csv --heldout other.csv --out model.toml"
 )]
-pub struct DiagnoseArgs {
+pub(super) struct DiagnoseArgs {
     /// The robot as it is believed: a name (joulepath robots list) or a robot file.
     #[arg(long, value_name = "NAME|FILE")]
     robot: String,
@@ -104,11 +104,7 @@ enum TrustArg {
     Unknown,
 }
 
-/// Runs the command.
-///
-/// # Errors
-/// A log or a robot that cannot be used, or output that cannot be written.
-pub fn run(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
+pub(super) fn run(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
     let (found, basis) = diagnosed(args)?;
     common::print(args.format, || report::json(&found, &basis), || report::text(&found, &basis))?;
     Ok(if found.verdict == Verdict::NoGap { ExitCode::SUCCESS } else { ExitCode::from(1) })
@@ -116,10 +112,7 @@ pub fn run(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
 
 /// The JSON of a case of `blind generate`, diagnosed without some effects; without omissions, the
 /// model is written too.
-///
-/// # Errors
-/// See [`run`].
-pub fn of_case(case: &Path, options: &Value, without: &[&str]) -> anyhow::Result<Value> {
+pub(super) fn of_case(case: &Path, options: &Value, without: &[&str]) -> anyhow::Result<Value> {
     let text = |key: &str| options.get(key).and_then(Value::as_str);
     let baseline = case.join("baseline-1.csv");
     let args = DiagnoseArgs {
@@ -246,9 +239,7 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
     }
     let graded = if held.is_empty() { &train } else { &held };
     write(args, &model, graded, &found, &mut basis)?;
-    for text in &basis.notes[shown..] {
-        common::note(args.quiet, text);
-    }
+    common::notes(args.quiet, &basis.notes[shown..]);
     Ok((found, basis))
 }
 

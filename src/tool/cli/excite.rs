@@ -5,14 +5,14 @@ mod args;
 mod motion;
 mod outputs;
 
-pub use args::ExciteArgs;
+pub(super) use args::ExciteArgs;
 
 use std::process::ExitCode;
 
 use anyhow::bail;
 use nalgebra::Vector3;
 
-use self::area::{keep_out, numbers, plane};
+use self::area::{keep_out, plane};
 use self::args::{Spacing, Variant, WIDEST};
 use self::motion::{FINE, along_plateaus, designed};
 use self::outputs::{json, text, write};
@@ -33,17 +33,11 @@ const MOST_CYCLES: usize = 10_000;
 /// Minimum number of points per period of the highest harmonic.
 const LEAST_POINTS: f64 = 6.0;
 
-/// Runs the command.
-///
-/// # Errors
-/// A robot without limits, invalid options, or output that cannot be written.
-pub fn run(args: &ExciteArgs) -> anyhow::Result<ExitCode> {
+pub(super) fn run(args: &ExciteArgs) -> anyhow::Result<ExitCode> {
     let model = effects::load_estimated(&args.robot)?;
     common::require_six_joints(&model, "RAPID is written for robots with 6")?;
     let settings = settings(args, &model)?;
-    for text in model.assumed() {
-        common::note(args.quiet, &text);
-    }
+    common::notes(args.quiet, model.assumed());
     let body = Body::new(&model, settings.tool, &settings.obstacles);
     let plateaus = |found: Plateaus| along_plateaus(args, &model, &settings, &body, &found);
     let motion = match args.variant {
@@ -52,8 +46,7 @@ pub fn run(args: &ExciteArgs) -> anyhow::Result<ExitCode> {
         _ => designed(args, &model, &settings, &body)?,
     };
     let outputs = write(args, &model, &settings.load, &motion)?;
-    common::print(args.format, || json(&motion, &outputs), || text(&motion, &outputs))?;
-    Ok(ExitCode::SUCCESS)
+    common::print(args.format, || json(&motion, &outputs), || text(&motion, &outputs))
 }
 
 fn settings(args: &ExciteArgs, model: &Model) -> anyhow::Result<Design> {
@@ -99,17 +92,14 @@ fn settings(args: &ExciteArgs, model: &Model) -> anyhow::Result<Design> {
             );
         }
     }
-    let mut obstacles = Vec::new();
-    for text in &args.planes {
-        obstacles.push(Obstacle::Plane(plane(text)?));
-    }
-    for text in &args.boxes {
-        obstacles.push(Obstacle::KeepOut(keep_out(text)?));
-    }
+    let planes = args.planes.iter().map(|text| Ok(Obstacle::Plane(plane(text)?)));
+    let boxes = args.boxes.iter().map(|text| Ok(Obstacle::KeepOut(keep_out(text)?)));
+    let mut obstacles: Vec<Obstacle> = planes.chain(boxes).collect::<anyhow::Result<_>>()?;
     obstacles.extend(floor(model));
     let tool = match &args.tool {
         Some(text) => {
-            let [x, y, z] = numbers("--tool", text, "three lengths in mm, such as 0,0,250")?;
+            let [x, y, z] =
+                common::numbers("--tool", text, "three lengths in mm, such as 0,0,250")?;
             Vector3::new(x, y, z) * 1e-3
         }
         None => Vector3::zeros(),

@@ -24,7 +24,7 @@ use crate::tool::report::identify::{self as report, LogRecord};
 #[command(
     after_help = "Example: joulepath identify --robot IRB1600-10/1.45 --log run1.csv run2.csv --validate other.csv --out model.toml"
 )]
-pub struct IdentifyArgs {
+pub(super) struct IdentifyArgs {
     /// The robot: a name (joulepath robots list) or a robot file, TOML or URDF.
     #[arg(long, value_name = "NAME|FILE")]
     robot: String,
@@ -121,11 +121,7 @@ fn date(text: &str) -> Result<String, String> {
     if (1..=last).contains(&day) { Ok(text.to_owned()) } else { Err(wrong()) }
 }
 
-/// Runs the command.
-///
-/// # Errors
-/// A log or a robot that cannot be used, or output that cannot be written.
-pub fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
+pub(super) fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
     let model = effects::load(&args.robot)?;
     let map = ColumnMap::parse(&args.map)?;
     if let Some(period) = args.period.filter(|period| !PERIODS.contains(period)) {
@@ -414,10 +410,5 @@ fn write(
             .context("the identified numbers are no robot file; nothing was written")?;
         output::write(path, text.as_bytes())?;
     }
-    common::print(
-        args.format,
-        || report::json(found, basis, &path),
-        || report::text(found, basis),
-    )?;
-    Ok(ExitCode::SUCCESS)
+    common::print(args.format, || report::json(found, basis, &path), || report::text(found, basis))
 }

@@ -30,59 +30,59 @@ use crate::tool::report;
     back.\n\nExit codes: 0, 1 where more is wasted than --max-waste allows, 2 where nothing can \
     be read.\n\nExample: joulepath lint fixtures/pick_place --robot IRB1600-10/1.45"
 )]
-pub struct LintArgs {
+pub(super) struct LintArgs {
     /// What is run, and where.
     #[command(flatten)]
-    pub cell: CellArgs,
+    pub(super) cell: CellArgs,
 
     /// Only these rules: codes, starts of codes, names or families.
     #[arg(long, value_name = "RULES", value_delimiter = ',')]
-    pub select: Vec<String>,
+    pub(super) select: Vec<String>,
 
     /// Not these rules.
     #[arg(long, value_name = "RULES", value_delimiter = ',')]
-    pub ignore: Vec<String>,
+    pub(super) ignore: Vec<String>,
 
     /// Least saving that is told, J.
     #[arg(long, value_name = "JOULES", allow_negative_numbers = true)]
-    pub threshold: Option<f64>,
+    pub(super) threshold: Option<f64>,
 
     /// How the result is written.
     #[arg(long, value_enum, default_value_t = LintFormat::Full)]
-    pub format: LintFormat,
+    pub(super) format: LintFormat,
 
     /// Apply safe fixes in place.
     #[arg(long)]
-    pub fix: bool,
+    pub(super) fix: bool,
 
     /// Apply unsafe fixes too.
     #[arg(long)]
-    pub unsafe_fixes: bool,
+    pub(super) unsafe_fixes: bool,
 
     /// Print what the fixes would change as a unified diff, and write nothing.
     #[arg(long)]
-    pub diff: bool,
+    pub(super) diff: bool,
 
     /// Count findings by rule, and list those that save most, on standard error.
     #[arg(long)]
-    pub statistics: bool,
+    pub(super) statistics: bool,
 
     /// Exit with 1 where the findings waste more: 500J, or 3% of the cycle.
     #[arg(long, value_name = "500J|3%", allow_hyphen_values = true)]
-    pub max_waste: Option<String>,
+    pub(super) max_waste: Option<String>,
 
     /// Findings that are known: they are not told.
     #[arg(long, value_name = "FILE")]
-    pub baseline: Option<PathBuf>,
+    pub(super) baseline: Option<PathBuf>,
 
     /// Write all findings into a baseline.
     #[arg(long, value_name = "FILE")]
-    pub write_baseline: Option<PathBuf>,
+    pub(super) write_baseline: Option<PathBuf>,
 }
 
 /// Forms of the result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum LintFormat {
+pub(super) enum LintFormat {
     /// With the source.
     #[default]
     Full,
@@ -100,11 +100,7 @@ pub enum LintFormat {
     Junit,
 }
 
-/// Runs the command.
-///
-/// # Errors
-/// Nothing can be read, an option is wrong, or the output can't be written.
-pub fn run(args: &LintArgs) -> anyhow::Result<ExitCode> {
+pub(super) fn run(args: &LintArgs) -> anyhow::Result<ExitCode> {
     let mut setup = Setup::new(args)?;
     let mut report = if args.fix || args.unsafe_fixes || args.diff {
         let report = fix(args, &mut setup.programs)?;
@@ -166,9 +162,6 @@ pub(super) struct Setup {
 
 impl Setup {
     /// Reads files, configuration and robot.
-    ///
-    /// # Errors
-    /// Nothing can be read, or an option is wrong.
     pub(super) fn new(args: &LintArgs) -> anyhow::Result<Setup> {
         let input = input::read(&args.cell.paths)?;
         common::note_unreadable(args.cell.quiet, &input);

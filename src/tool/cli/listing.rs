@@ -9,7 +9,7 @@ const BEGIN: &[u8] = b"<Module>";
 const END: &[u8] = b"</Module>";
 
 /// Adds the program files to the outputs, with the new modules next to those of their folder.
-pub fn add(result: &mut Retrofit, input: &Input, files: &[Source]) {
+pub(super) fn add(result: &mut Retrofit, input: &Input, files: &[Source]) {
     let new: Vec<String> = result
         .outputs
         .iter()
@@ -90,7 +90,7 @@ fn extended(bytes: &[u8], neighbour: usize, new: &str) -> Option<Vec<u8>> {
 }
 
 /// A module list without the modules of these file names; emptied lines are removed.
-pub fn without(bytes: &[u8], names: &[String]) -> Vec<u8> {
+pub(super) fn without(bytes: &[u8], names: &[String]) -> Vec<u8> {
     let mut out = bytes.to_vec();
     let mut from = 0;
     while let Some(begin) = find(&out[from..], BEGIN).map(|at| from + at) {

@@ -22,39 +22,39 @@ const HELD_OUT: f64 = 0.3;
 const LEAST_CYCLES: usize = 3;
 
 /// A log that was read.
-pub struct Read {
+pub(super) struct Read {
     /// Its path as given.
-    pub shown: String,
+    pub(super) shown: String,
     /// SHA-256.
-    pub hash: String,
+    pub(super) hash: String,
     /// The log.
-    pub log: Log,
+    pub(super) log: Log,
     /// Quality of the synchronisation of its two halves, if it has two.
     clocks: Option<String>,
 }
 
 /// A log prepared for use.
-pub struct Ready {
+pub(super) struct Ready {
     /// The record of its origin.
-    pub record: LogRecord,
+    pub(super) record: LogRecord,
     /// The samples.
-    pub samples: Samples,
+    pub(super) samples: Samples,
     /// Origin of the torques.
-    pub origin: String,
+    pub(super) origin: String,
     /// The valid rows.
-    pub log: Log,
+    pub(super) log: Log,
     /// Ratio of the logged torques to the weight of the robot file's masses, if implausible.
-    pub weight: Option<f64>,
+    pub(super) weight: Option<f64>,
 }
 
 /// Reads the logs of one robot.
-pub struct Reader<'a> {
+pub(super) struct Reader<'a> {
     /// The robot.
-    pub model: &'a Model,
+    pub(super) model: &'a Model,
     /// Whether to suppress notes on standard error.
-    pub quiet: bool,
+    pub(super) quiet: bool,
     /// Notes on the logs, for the result.
-    pub notes: Vec<String>,
+    pub(super) notes: Vec<String>,
 }
 
 impl Reader<'_> {
@@ -67,22 +67,10 @@ impl Reader<'_> {
     }
 
     /// Checks a log and extracts its samples.
-    ///
-    /// # Errors
-    /// It does not match this robot, or is unusable.
-    pub fn ready(&mut self, read: Read, hints: Hints) -> anyhow::Result<Ready> {
+    pub(super) fn ready(&mut self, read: Read, hints: Hints) -> anyhow::Result<Ready> {
         let model = self.model;
         let Read { shown, hash, log, clocks } = read;
-        if log.joints() != model.dof {
-            bail!(
-                "{shown}: positions of {} joints are logged, {} has {}; give a log with q1 to q{}, or \
-                 another --robot",
-                log.joints(),
-                model.name,
-                model.dof,
-                model.dof
-            );
-        }
+        check_joints(&shown, &log, model)?;
         let (log, impossible) = cleaned(&log);
         for text in summed_up(log.rejected.iter().chain(&impossible)) {
             common::note(self.quiet, &format!("{shown}: {text}"));
@@ -134,12 +122,24 @@ impl Reader<'_> {
     }
 }
 
+/// Refuses a log of a robot with another number of joints.
+pub(super) fn check_joints(shown: &str, log: &Log, model: &Model) -> anyhow::Result<()> {
+    let (joints, Model { name, dof, .. }) = (log.joints(), model);
+    if joints != *dof {
+        bail!(
+            "{shown}: positions of {joints} joints are logged, {name} has {dof}; give a log with q1 to \
+             q{dof}, or another --robot"
+        );
+    }
+    Ok(())
+}
+
 /// Splits a log into training and held-out part: the last repetitions, or the last part of the
 /// whole.
 ///
 /// # Errors
 /// A part is too short.
-pub fn held_out(model: &Model, of: &Ready) -> anyhow::Result<[Ready; 2]> {
+pub(super) fn held_out(model: &Model, of: &Ready) -> anyhow::Result<[Ready; 2]> {
     let t = of.log.time();
     let (begins, ends) = (t.first().copied().unwrap_or(0.0), t.last().copied().unwrap_or(0.0));
     let (at, period) = match of.samples.source {
@@ -166,10 +166,11 @@ pub fn held_out(model: &Model, of: &Ready) -> anyhow::Result<[Ready; 2]> {
 }
 
 /// Reads logs and merges the halves of one run.
-///
-/// # Errors
-/// A log cannot be read.
-pub fn read_all(paths: &[PathBuf], map: &ColumnMap, model: &Model) -> anyhow::Result<Vec<Read>> {
+pub(super) fn read_all(
+    paths: &[PathBuf],
+    map: &ColumnMap,
+    model: &Model,
+) -> anyhow::Result<Vec<Read>> {
     let mut logs: Vec<Read> = Vec::new();
     for path in paths {
         let read = read(path, map)?;
@@ -195,7 +196,8 @@ pub fn read_all(paths: &[PathBuf], map: &ColumnMap, model: &Model) -> anyhow::Re
     Ok(logs)
 }
 
-fn read(path: &Path, map: &ColumnMap) -> anyhow::Result<Read> {
+/// Reads one log.
+pub(super) fn read(path: &Path, map: &ColumnMap) -> anyhow::Result<Read> {
     let shown = path.display().to_string();
     if path.is_dir() {
         bail!("{shown}: this is a folder; give the log files in it one by one");

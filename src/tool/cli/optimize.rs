@@ -33,7 +33,7 @@ use crate::tool::retrofit::{
     after_help = "Example: joulepath optimize fixtures/pick_place --robot IRB1600-10/1.45 --out optimized"
 )]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag of the command line")]
-pub struct OptimizeArgs {
+pub(super) struct OptimizeArgs {
     #[command(flatten)]
     program: ProgramArgs,
 
@@ -197,11 +197,7 @@ const LARGEST_DEVIATION_MM: f64 = 1000.0;
 /// Maximum joint displacement to a waiting pose, degrees.
 const LARGEST_DWELL_POSE_DEG: f64 = 90.0;
 
-/// Runs the command.
-///
-/// # Errors
-/// Unusable input, or output that cannot be written.
-pub fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
+pub(super) fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
     if args.undo {
         return take_back(args);
     }
@@ -209,10 +205,7 @@ pub fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
 }
 
 /// Optimises a program that already has streams and replaces these.
-///
-/// # Errors
-/// The program has no streams, or an error of [`run`].
-pub fn refresh(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
+pub(super) fn refresh(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
     if args.undo {
         bail!("refresh takes nothing back: joulepath optimize --undo does");
     }
@@ -224,6 +217,7 @@ pub fn refresh(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
 
 fn work(args: &OptimizeArgs, job: &Job) -> anyhow::Result<ExitCode> {
     let settings = settings(args, job)?;
+    let quiet = args.program.cell.quiet;
     // The folder of a single task does not include the controller's module list.
     let paths = args.program.cell.paths.as_slice();
     let backup = whole_backup(paths, job);
@@ -232,7 +226,7 @@ fn work(args: &OptimizeArgs, job: &Job) -> anyhow::Result<ExitCode> {
     }
     let lists = backup.is_some() || (args.in_place && args.out.is_none());
     let result = {
-        let bar = progress(args.program.cell.quiet);
+        let bar = progress(quiet);
         let result = retrofit(&job.files, &job.model, &settings, &|done, all| {
             bar.set_length(all as u64);
             bar.set_position(done as u64);
@@ -254,9 +248,7 @@ fn work(args: &OptimizeArgs, job: &Job) -> anyhow::Result<ExitCode> {
         }
         result
     };
-    for text in &result.notes {
-        common::note(args.program.cell.quiet, text);
-    }
+    common::notes(quiet, &result.notes);
     let sources = job.sources();
     let places = Places::new(&sources);
     let mut written = Vec::new();
@@ -272,12 +264,8 @@ fn work(args: &OptimizeArgs, job: &Job) -> anyhow::Result<ExitCode> {
         written.push(path.display().to_string());
     }
     if args.program.format == Format::Text {
-        for text in report::text::notes(&job.model, places, &result.before.0) {
-            common::note(args.program.cell.quiet, &text);
-        }
-        for path in &written {
-            common::note(args.program.cell.quiet, &format!("wrote {path}"));
-        }
+        common::notes(quiet, report::text::notes(&job.model, places, &result.before.0));
+        common::notes(quiet, written.iter().map(|path| format!("wrote {path}")));
     }
     common::print(
         args.program.format,
@@ -406,10 +394,7 @@ fn dwell_pose(degrees: f64) -> anyhow::Result<f64> {
 }
 
 /// Minimum time between two points of a stream, s.
-///
-/// # Errors
-/// The time is outside the permitted range.
-pub fn spacing(asked: Option<f64>) -> anyhow::Result<f64> {
+pub(super) fn spacing(asked: Option<f64>) -> anyhow::Result<f64> {
     let spacing_s = asked.unwrap_or(SPACING_S);
     if !(LEAST_SPACING_S..=LARGEST_SPACING_S).contains(&spacing_s) {
         bail!("--spacing {spacing_s}: give {LEAST_SPACING_S} to {LARGEST_SPACING_S} s");
@@ -436,12 +421,9 @@ fn take_back(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
         done.extend(undo::undo(path)?);
     }
     if args.program.format == Format::Text {
-        for text in &done {
-            common::note(cell.quiet, text);
-        }
+        common::notes(cell.quiet, &done);
     }
-    common::print(args.program.format, || serde_json::json!({ "undone": done }), String::new)?;
-    Ok(ExitCode::SUCCESS)
+    common::print(args.program.format, || serde_json::json!({ "undone": done }), String::new)
 }
 
 fn diff(job: &Job, result: &Retrofit) -> String {

@@ -12,10 +12,7 @@ use crate::rapid::ir::signals::{Signal, signals};
 use crate::retime::motion::Simulation;
 
 /// Checks the signal names of `--assume` and `--input`, and the levels.
-///
-/// # Errors
-/// The program does not use a signal, or a level is invalid.
-pub fn check(
+pub(super) fn check(
     args: &CellArgs,
     levels: &BTreeMap<String, f64>,
     program: &Program,
@@ -54,7 +51,7 @@ pub fn check(
 }
 
 /// Notes on levels that the simulated cycle did not use.
-pub fn unused_levels(args: &CellArgs, simulation: &Simulation) -> Vec<String> {
+pub(super) fn unused_levels(args: &CellArgs, simulation: &Simulation) -> Vec<String> {
     let mut notes = Vec::new();
     for text in &args.levels {
         let name = text.split('=').next().unwrap_or_default().trim();

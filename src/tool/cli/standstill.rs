@@ -24,7 +24,7 @@ use crate::tool::retrofit::read_program;
     mut_arg("paths", |paths| paths.required(false)),
     after_help = "Examples: joulepath standstill --robot IRB1600-10/1.45 --pose \"0,90,-90,0,0,0\"\n          joulepath standstill fixtures/pick_place"
 )]
-pub struct StandstillArgs {
+pub(super) struct StandstillArgs {
     #[command(flatten)]
     program: ProgramArgs,
 
@@ -42,11 +42,7 @@ pub struct StandstillArgs {
     within: f64,
 }
 
-/// Runs the command.
-///
-/// # Errors
-/// Unusable input, or a robot with unknown holding power.
-pub fn run(args: &StandstillArgs) -> anyhow::Result<ExitCode> {
+pub(super) fn run(args: &StandstillArgs) -> anyhow::Result<ExitCode> {
     if !(args.within.is_finite() && args.within >= 0.0) {
         bail!("--within {}: give a distance of 0 degrees or more", args.within);
     }
@@ -61,16 +57,13 @@ pub fn run(args: &StandstillArgs) -> anyhow::Result<ExitCode> {
         common::note(args.program.cell.quiet, &text);
     }
     if args.program.format == Format::Text {
-        for text in &assumed {
-            common::note(args.program.cell.quiet, text);
-        }
+        common::notes(args.program.cell.quiet, &assumed);
     }
     common::print(
         args.program.format,
         || standstill::json(&model, &poses, &assumed),
         || standstill::text(&poses),
-    )?;
-    Ok(ExitCode::SUCCESS)
+    )
 }
 
 fn of_poses(
@@ -104,9 +97,7 @@ fn of_program(
     let simulation = motion::simulate(&program, entry, &job.model, &job.options);
     let sources = job.sources();
     let places = Places::new(&sources);
-    for text in text::notes(&job.model, places, &simulation) {
-        common::note(args.program.cell.quiet, &text);
-    }
+    common::notes(args.program.cell.quiet, text::notes(&job.model, places, &simulation));
     let plausible = plausible(args, &job.model);
     let poses = dwells(&job.model, &simulation)
         .iter()

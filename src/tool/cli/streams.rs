@@ -13,9 +13,9 @@ use crate::tool::retrofit::{
 
 /// The additions of a retrofit to a program.
 #[derive(Clone, Debug, Default)]
-pub struct Streams {
+pub(super) struct Streams {
     /// The modules of streams.
-    pub modules: Vec<PathBuf>,
+    pub(super) modules: Vec<PathBuf>,
     /// Data that the user stated in them: name without prefix, and text.
     stated: Vec<(&'static str, Vec<u8>)>,
 }
@@ -24,10 +24,7 @@ pub struct Streams {
 const STATED: [&str; 2] = ["RobotType", "SerialNo"];
 
 /// Removes the streams from a program.
-///
-/// # Errors
-/// The program has no streams.
-pub fn take_out(input: &mut Input) -> anyhow::Result<Streams> {
+pub(super) fn take_out(input: &mut Input) -> anyhow::Result<Streams> {
     let mut streams = Streams::default();
     let mut prefixes: Vec<String> = Vec::new();
     let mut names: Vec<String> = Vec::new();
@@ -73,7 +70,7 @@ pub fn take_out(input: &mut Input) -> anyhow::Result<Streams> {
 
 impl Streams {
     /// Copies the data that the user stated into the new modules.
-    pub fn restate(&self, result: &mut Retrofit) {
+    pub(super) fn restate(&self, result: &mut Retrofit) {
         for file in result.outputs.iter_mut().filter(|file| file.kind == OutputKind::New) {
             for (name, text) in &self.stated {
                 if let Some(at) = datum(&file.bytes, name) {

@@ -25,13 +25,13 @@ const ORIGINALS: &str = "files";
 const VERSION: u32 = 1;
 
 /// A file to write in place.
-pub struct Change<'a> {
+pub(super) struct Change<'a> {
     /// Its path.
-    pub path: PathBuf,
+    pub(super) path: PathBuf,
     /// The content that undo restores; `None` for a new file.
-    pub before: Option<Vec<u8>>,
+    pub(super) before: Option<Vec<u8>>,
     /// Its new content.
-    pub after: Cow<'a, [u8]>,
+    pub(super) after: Cow<'a, [u8]>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -59,7 +59,7 @@ enum Kind {
 }
 
 /// An undo folder that is not written yet.
-pub struct Plan<'a> {
+pub(super) struct Plan<'a> {
     folder: PathBuf,
     files: Vec<(PathBuf, Cow<'a, [u8]>)>,
 }
@@ -69,7 +69,7 @@ pub struct Plan<'a> {
 ///
 /// # Errors
 /// The undo folder or a new file already exists, or a file lies outside `root`.
-pub fn plan<'a>(
+pub(super) fn plan<'a>(
     root: &Path,
     changes: &'a [Change<'_>],
     streams: &[PathBuf],
@@ -111,10 +111,7 @@ pub fn plan<'a>(
 
 impl Plan<'_> {
     /// Writes the undo folder and returns its path; the program is not changed.
-    ///
-    /// # Errors
-    /// It cannot be written.
-    pub fn write(&self) -> anyhow::Result<PathBuf> {
+    pub(super) fn write(&self) -> anyhow::Result<PathBuf> {
         if self.folder.exists() {
             fs::remove_dir_all(&self.folder)
                 .with_context(|| format!("cannot replace '{}'", self.folder.display()))?;
@@ -130,7 +127,7 @@ impl Plan<'_> {
 ///
 /// # Errors
 /// There is nothing to undo, or a file was edited since.
-pub fn undo(path: &Path) -> anyhow::Result<Vec<String>> {
+pub(super) fn undo(path: &Path) -> anyhow::Result<Vec<String>> {
     let absolute = real(path)?;
     let found = absolute.ancestors().find_map(|root| {
         let folder = beside(root).ok()?;

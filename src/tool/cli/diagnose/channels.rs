@@ -59,9 +59,6 @@ pub(super) fn runs(logs: &[Ready]) -> Vec<Run> {
 }
 
 /// File and line of each movement of a program.
-///
-/// # Errors
-/// The program cannot be run.
 pub(super) fn lines(program: &Path, robot: &str) -> anyhow::Result<Vec<(String, usize)>> {
     let cell = CellArgs {
         paths: vec![program.to_path_buf()],

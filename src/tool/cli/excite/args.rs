@@ -18,7 +18,7 @@ pub(super) const WIDEST: f64 = 0.1;
 #[command(
     after_help = "Example: joulepath excite --robot IRB1600-10/1.45 --plane \"1,0,0,-0.8\" --out excitation"
 )]
-pub struct ExciteArgs {
+pub(in crate::tool::cli) struct ExciteArgs {
     /// The robot: a name (joulepath robots list) or a robot file.
     #[arg(long, value_name = "NAME|FILE")]
     pub(super) robot: String,

@@ -20,16 +20,16 @@ const MAX_FOLDERS: usize = 32;
 
 /// A file or folder that could not be read.
 #[derive(Clone, Debug)]
-pub struct Unreadable {
+pub(in crate::tool::cli) struct Unreadable {
     /// Its path.
-    pub path: String,
+    pub(in crate::tool::cli) path: String,
     /// The reason.
-    pub reason: String,
+    pub(in crate::tool::cli) reason: String,
 }
 
 /// Why nothing was read.
 #[derive(Debug, Error)]
-pub enum InputError {
+pub(in crate::tool::cli) enum InputError {
     /// No path was given.
     #[error("no file or folder given; name a RAPID file, a folder or a .pgf program")]
     Nothing,

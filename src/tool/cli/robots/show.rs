@@ -1,6 +1,7 @@
 //! `joulepath robots show`: the data of a robot.
 
 use std::fmt::Write as _;
+use std::process::ExitCode;
 
 use serde_json::{Value, json};
 
@@ -10,7 +11,7 @@ use crate::arm::robot::{Model, Provenance};
 use crate::retime::energy::plausible::{DRAWS, Interval};
 use crate::tool::cli::common::{Format, print};
 
-pub(super) fn run(robot: &str, format: Format) -> anyhow::Result<()> {
+pub(super) fn run(robot: &str, format: Format) -> anyhow::Result<ExitCode> {
     let model = effects::load_estimated(robot)?;
     print(format, || document(&model), || text(&model))
 }
