@@ -14,7 +14,7 @@ mod stream_module;
 mod stream_test;
 
 pub use brake_note::{BrakeDwell, brake_note};
-pub use excitation::{Excitation, ExcitationModules, LoggedTorques, Points, excitation};
+pub use excitation::{Excitation, LoggedTorques, Points, excitation};
 pub use generated::{
     EGM_STEP_S, GeneratedMove, GeneratedNames, egm_module, egm_rows, generated_module, jointtarget,
     main_module, stream_time,

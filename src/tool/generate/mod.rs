@@ -9,9 +9,7 @@ mod settings;
 pub mod table;
 
 pub use error::GenerateError;
-pub use follow::FollowError;
 pub use measure::Measure;
-pub use moves::MovesError;
 pub use settings::{Form, Settings};
 
 use crate::arm::robot::Model;

@@ -59,6 +59,11 @@ pub(super) fn candidates(sites: &[Site]) -> Vec<Candidate> {
     sites.iter().enumerate().flat_map(variants).collect()
 }
 
+/// The candidates that have a stream, with their indices.
+pub(super) fn with_stream(candidates: &[Candidate]) -> impl Iterator<Item = (usize, &Candidate)> {
+    candidates.iter().enumerate().filter(|(_, candidate)| candidate.retiming().is_some())
+}
+
 /// Replaces the states at these indices.
 pub(super) fn with_states(
     mut candidates: Vec<Candidate>,

@@ -1,6 +1,6 @@
 //! The cost of guards: dozens of RAPID instructions at the stop point before a stream.
 
-use super::candidate::{Candidate, State};
+use super::candidate::{Candidate, State, with_stream};
 use super::figures::INSTRUCTION_MS;
 use super::job::Job;
 use super::settings::{Budget, Objective};
@@ -74,8 +74,7 @@ pub(super) fn costly(
             }
         }
     }
-    let streams = candidates.iter().enumerate().filter(|(_, c)| c.retiming().is_some());
-    streams
+    with_stream(candidates)
         .filter_map(|(index, candidate)| {
             let (_, why) = costly.iter().find(|(site, _)| *site == candidate.site)?;
             Some((index, State::Refused(Reason::NoStream(why.clone()))))

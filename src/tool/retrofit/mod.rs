@@ -64,4 +64,5 @@ pub use settings::{Budget, CLOSEST_S, Form, Objective, SPACING_S, Settings};
 pub use signals::{SignalKind, SignalShift};
 pub use uncertainty::Uncertainty;
 pub(in crate::tool) use verify::{parses, run_again};
+pub(in crate::tool) use verify_speeds::largest_share;
 pub use without::{is_streams, prefix, without_streams};

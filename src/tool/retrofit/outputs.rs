@@ -1,7 +1,5 @@
 //! The files of the emitted program.
 
-use sha2::{Digest, Sha256};
-
 use super::candidate::Candidate;
 use super::emission_context::EmissionContext;
 use super::emitted_sites::{emitted_site, emitted_wait};
@@ -9,7 +7,7 @@ use super::error::RetrofitError;
 use super::files::{OutputFile, unchanged};
 use super::job::Original;
 use super::relocated_waits::RelocatedWait;
-use crate::rapid::text::{self, SourceFile, Span};
+use crate::rapid::text::{self, Span};
 use crate::tool::emit;
 
 /// Emits the streams of the candidates and the relocated waits; other files stay unchanged.
@@ -28,17 +26,7 @@ pub(super) fn emitted(
     if emitted_sites.is_empty() {
         return Ok(Outputs { files: outputs, guards: Vec::new() });
     }
-    let program = hash(&context.originals);
-    let emission = emit::Emission {
-        files: &context.originals,
-        names: &context.names,
-        layout: context.layout,
-        robot: &context.robot,
-        override_percent: context.override_percent,
-        recorded: &context.recorded,
-        program: &program,
-    };
-    let emitted = emit::emit(&emission, &emitted_sites)?;
+    let emitted = emit::emit(&context.emission, &emitted_sites)?;
     for (i, source) in files.iter().enumerate() {
         let edits: Vec<text::Edit> =
             emitted.edits.iter().filter(|e| e.span.file.0 as usize == i).cloned().collect();
@@ -67,17 +55,3 @@ pub(super) struct Outputs {
     /// Places with guards, and the number of RAPID instructions of these in a cycle.
     pub(super) guards: Vec<(Span, usize)>,
 }
-
-/// A hash that identifies a version of the program.
-fn hash(files: &[SourceFile]) -> String {
-    let mut hasher = Sha256::new();
-    for file in files {
-        hasher.update((file.bytes.len() as u64).to_le_bytes());
-        hasher.update(&file.bytes);
-    }
-    let digest = hasher.finalize();
-    digest.iter().take(HASH_BYTES).fold(String::new(), |text, byte| text + &format!("{byte:02x}"))
-}
-
-/// Number of emitted bytes of the hash.
-const HASH_BYTES: usize = 8;

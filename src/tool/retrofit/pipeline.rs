@@ -107,7 +107,7 @@ fn with_streams(
         .filter_map(|candidate| candidate.retiming())
         .any(|retiming| retiming.path == PathUse::Left);
     if settings.form == Form::Guided {
-        let (files, candidates) = guided(original, rewritten.candidates, &context.names)?;
+        let (files, candidates) = guided(original, rewritten.candidates, &context.emission.names)?;
         rewritten.candidates = candidates;
         rewritten.outputs.files = files;
         rewritten.outputs.guards.clear();

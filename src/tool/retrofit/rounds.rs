@@ -1,6 +1,6 @@
 //! Emits and verifies repeatedly: each round removes the pieces that failed the verification.
 
-use super::candidate::{Candidate, State, with_states};
+use super::candidate::{Candidate, State, with_states, with_stream};
 use super::emission_context::EmissionContext;
 use super::error::RetrofitError;
 use super::figures::LowerLimits;
@@ -15,8 +15,8 @@ use super::settings::{Budget, Objective};
 use super::torque_demand::TorqueBound;
 use super::uncertainty::uncertain;
 use super::verify::{Attempt, Rewrite, verify};
+use super::verify_streams::all_failed;
 use crate::retime::optimize::allowed::Loads;
-use crate::retime::optimize::reason::Reason;
 
 /// Maximum number of rounds; the last one keeps no stream.
 const MOST_ROUNDS: usize = 12;
@@ -40,7 +40,7 @@ pub(super) fn verified(
         let outputs = emitted(context, original, &candidates, &waits)?;
         let rewrite = Rewrite::Streams { candidates: &candidates, waits: &waits };
         let attempt = verify(original, &outputs.files, model, &settings, rewrite);
-        let is_unchanged = waits.is_empty() && candidates.iter().all(|c| c.retiming().is_none());
+        let is_unchanged = waits.is_empty() && with_stream(&candidates).next().is_none();
         if attempt.verification.passed || is_unchanged {
             let bound = torque_bound.as_mut();
             let (lower_limits, changes) =
@@ -68,10 +68,7 @@ pub(super) fn verified(
         if failed.is_empty() || rounds == MOST_ROUNDS {
             // The fault has no single cause: all streams are refused.
             let why = attempt.verification.broken().unwrap_or("the verification failed");
-            let reason = Reason::Verification(format!("did not hold: {why}"));
-            let streams = candidates.iter().enumerate().filter(|(_, c)| c.retiming().is_some());
-            let all: Vec<_> = streams.map(|(index, _)| (index, reason.clone())).collect();
-            failed.splice(0..0, all);
+            failed.splice(0..0, all_failed(&candidates, &format!("did not hold: {why}")));
         }
         let refused = failed.into_iter().map(|(index, reason)| (index, State::Refused(reason)));
         candidates = with_states(candidates, refused);

@@ -87,10 +87,12 @@ pub(super) fn verify(
         verification.note("every byte of the original is kept", bytes_kept);
         text_holds &= bytes_kept;
     }
-    let Ok(simulation) = run_again(outputs, &settings.entry, model, &settings.options) else {
+    let simulation = run_again(outputs, &settings.entry, model, &settings.options);
+    let simulation = simulation.unwrap_or_else(|_| {
         verification.note("the emitted program has its entry", false);
-        return unreadable(model, verification, rewrite);
-    };
+        text_holds = false;
+        nothing()
+    });
     let mut simulated = Simulated::with_energy(model, simulation);
     let mut wait_faults = BTreeMap::new();
     if let Rewrite::Streams { waits, .. } = rewrite {
@@ -148,28 +150,15 @@ pub(super) fn verify(
     attempt
 }
 
-/// The result for an emitted program that cannot be read.
-fn unreadable(model: &Model, verification: Verification, rewrite: Rewrite<'_>) -> Attempt {
-    let nothing = Simulation {
+/// The simulation of a program that cannot be read.
+fn nothing() -> Simulation {
+    Simulation {
         events: Vec::new(),
         cycle_s: 0.0,
         repeats_from: None,
         unresolved: Vec::new(),
         assumed: Vec::new(),
         inputs_asked: BTreeSet::new(),
-    };
-    let why = "the emitted text could not be read again";
-    let (failed, waits) = match rewrite {
-        Rewrite::Streams { candidates, waits } => {
-            (verify_streams::all_failed(candidates, why), waits.len())
-        }
-        Rewrite::Speeds { .. } => (Vec::new(), 0),
-    };
-    Attempt {
-        simulated: Simulated::with_energy(model, nothing),
-        verification,
-        failed,
-        wait_faults: (0..waits).map(|index| (index, Fault::Other)).collect(),
     }
 }
 

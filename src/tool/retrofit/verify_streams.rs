@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::candidate::Candidate;
+use super::candidate::{Candidate, with_stream};
 use super::job::Original;
 use super::order::same_event;
 use super::settings::Settings;
@@ -72,8 +72,8 @@ pub(super) fn compared(
 
 /// All candidates with streams, with this reason.
 pub(super) fn all_failed(candidates: &[Candidate], why: &str) -> Vec<(usize, Reason)> {
-    let streams = candidates.iter().enumerate().filter(|(_, c)| c.retiming().is_some());
-    streams.map(|(index, _)| (index, Reason::Verification(why.to_owned()))).collect()
+    let reason = || Reason::Verification(why.to_owned());
+    with_stream(candidates).map(|(index, _)| (index, reason())).collect()
 }
 
 /// The stream at or before the first event that differs; all streams if there is none.
@@ -92,8 +92,9 @@ pub(super) fn reordering(
 }
 
 fn streams(original: &Original<'_>, candidates: &[Candidate]) -> BTreeMap<usize, usize> {
-    let streams = candidates.iter().enumerate().filter(|(_, c)| c.retiming().is_some());
-    streams.flat_map(|(i, c)| original.events(c).iter().map(move |event| (*event, i))).collect()
+    with_stream(candidates)
+        .flat_map(|(i, c)| original.events(c).iter().map(move |event| (*event, i)))
+        .collect()
 }
 
 /// The streams that precede an unchanged movement that takes longer than before.

@@ -51,7 +51,7 @@ pub(super) fn write(
     let low = first.iter().copied().fold(f64::INFINITY, f64::min);
     let high = first.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let (middle, range) = (0.5 * (low + high), high - low);
-    let modules = excitation(&Excitation {
+    let [motion_module, logger] = excitation(&Excitation {
         title: title(args.variant).to_owned(),
         robot: model.name.clone(),
         cycles: motion.cycles,
@@ -65,7 +65,7 @@ pub(super) fn write(
     })?;
     let mut outputs = Vec::new();
     let table = table(model, load, motion);
-    for (name, text) in [modules.motion, modules.logger, ("excitation.csv".to_owned(), table)] {
+    for (name, text) in [motion_module, logger, ("excitation.csv".to_owned(), table)] {
         let path = args.out.join(name);
         output::write(&path, text.as_bytes())?;
         outputs.push(path.display().to_string());
