@@ -90,8 +90,7 @@ pub(super) fn read(root: &Path) -> Backup {
         let path = child(&child(root, folder)?, name)?;
         fs::read(path).ok().map(|bytes| text::decode(&bytes).text)
     };
-    let info = information(root).and_then(|path| fs::read(path).ok());
-    let info = info.map(|bytes| text::decode(&bytes).text).unwrap_or_default();
+    let info = file("BACKINFO", "backinfo.txt").unwrap_or_default();
     let system = file("SYSPAR", "SYS.cfg").unwrap_or_default();
     let motion = file("SYSPAR", "MOC.cfg").unwrap_or_default();
     let parameters = Parameters {

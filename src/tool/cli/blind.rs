@@ -15,9 +15,7 @@ use serde_json::{Value, json};
 use self::family::family;
 use super::common::{self, Format};
 use super::{diagnose, output};
-use crate::examine::blind::{
-    self, Asked, Case, FAMILY, Grades, KEY, Label, SEALS, Sealed, Settings,
-};
+use crate::examine::blind::{self, Asked, FAMILY, Grades, KEY, Label, SEALS, Sealed, Settings};
 use crate::tool::report::html::grades_report;
 
 /// The sealed examination of diagnose: generate cases, grade what was said of them.
@@ -125,7 +123,8 @@ fn generate(args: &GenerateArgs) -> anyhow::Result<ExitCode> {
         .map(|number| {
             let case = blind::case(&settings, number)
                 .context("the catalogue has none of the robots of the examination")?;
-            write_case(out, &case)?;
+            let files = case.files.iter().map(|(name, text)| (name, text));
+            output::write_folder(&out.join(&case.name), files)?;
             progress.inc(1);
             Ok((case.label, case.salt))
         })
@@ -137,13 +136,6 @@ fn generate(args: &GenerateArgs) -> anyhow::Result<ExitCode> {
     let text = format!("{} cases in '{}', the truth sealed in {KEY}", args.count, out.display());
     common::note(args.quiet, &text);
     Ok(ExitCode::SUCCESS)
-}
-
-fn write_case(out: &Path, case: &Case) -> anyhow::Result<()> {
-    let folder = out.join(&case.name);
-    let files: Vec<(PathBuf, &[u8])> =
-        case.files.iter().map(|(name, text)| (PathBuf::from(name), text.as_bytes())).collect();
-    output::write_folder(&folder, &files)
 }
 
 fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {

@@ -45,13 +45,10 @@ pub(super) fn run(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
         bail!("--point-estimate has no use here: the plausible robots are what a log narrows");
     }
     let job = common::prepare(&args.program)?;
-    let real = |path: &Path| path.canonicalize().ok();
     let modules = job.input.files.iter().map(|file| Path::new(&file.source.path));
     let mut inputs =
         modules.chain([args.log.as_path()]).chain(job.model.file.as_deref().map(Path::new));
-    if let Some(out) = real(&args.out)
-        && inputs.any(|input| real(input).is_some_and(|input| input == out))
-    {
+    if inputs.any(|input| output::is_same_file(input, &args.out)) {
         bail!("'{}' is read by this command, too: name another file for --out", args.out.display());
     }
     let (program, entry) = read_program(&job.files, &job.entry)?;

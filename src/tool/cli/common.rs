@@ -305,14 +305,14 @@ fn which_robot() -> String {
 
 /// The configuration, and its folder.
 pub(super) fn configuration(args: &CellArgs) -> anyhow::Result<(Config, PathBuf)> {
-    let unreadable = |path: &Path, error: &std::io::Error| config::ConfigError::Unreadable {
-        path: path.to_string_lossy().into_owned(),
-        reason: error.to_string(),
-    };
     let read = |path: &Path| -> anyhow::Result<(Config, PathBuf)> {
-        let text = fs::read_to_string(path).map_err(|error| unreadable(path, &error))?;
+        let shown = path.to_string_lossy().into_owned();
+        let text = fs::read_to_string(path).map_err(|error| config::ConfigError::Unreadable {
+            path: shown.clone(),
+            reason: error.to_string(),
+        })?;
         let folder = path.parent().map_or_else(PathBuf::new, Path::to_path_buf);
-        Ok((config::parse(&path.to_string_lossy(), &text)?, folder))
+        Ok((config::parse(&shown, &text)?, folder))
     };
     if let Some(path) = &args.config {
         return read(path);
@@ -411,6 +411,14 @@ pub(super) fn note_unreadable(quiet: bool, input: &Input) {
 pub(super) fn notes(quiet: bool, texts: impl IntoIterator<Item = impl AsRef<str>>) {
     for text in texts {
         note(quiet, text.as_ref());
+    }
+}
+
+/// A note on standard error unless it is among `known`, to which it is added.
+pub(super) fn note_once(quiet: bool, known: &mut Vec<String>, text: String) {
+    if !known.contains(&text) {
+        note(quiet, &text);
+        known.push(text);
     }
 }
 

@@ -14,7 +14,7 @@ use serde_json::Value;
 
 use super::common::{self, Format};
 use super::logs::{Read, Reader, Ready, held_out, read_all};
-use super::output;
+use super::output::{self, is_same_file};
 use crate::arm::effects::{self, ALL, Effect};
 use crate::arm::robot::{Model, Use, nearest, ready, to_toml};
 use crate::gap::{
@@ -136,10 +136,7 @@ pub(super) fn of_case(case: &Path, options: &Value, without: &[&str]) -> anyhow:
 
 /// Refuses outputs that overwrite an input, and logs that are given twice or in two roles.
 fn check_paths(args: &DiagnoseArgs) -> anyhow::Result<()> {
-    let real = |path: &Path| path.canonicalize().ok();
-    let within = |path: &Path, files: &[PathBuf]| {
-        real(path).is_some_and(|path| files.iter().any(|file| real(file).as_ref() == Some(&path)))
-    };
+    let within = |path: &Path, files: &[PathBuf]| files.iter().any(|it| is_same_file(it, path));
     let robot = vec![PathBuf::from(&args.robot)];
     let read = [&robot, &args.log, &args.heldout, &args.baseline];
     for (option, written) in [("--out", &args.out), ("--report", &args.report)] {
@@ -150,7 +147,7 @@ fn check_paths(args: &DiagnoseArgs) -> anyhow::Result<()> {
         }
     }
     if let (Some(model), Some(page)) = (&args.out, &args.report)
-        && (model == page || real(model).is_some_and(|model| Some(model) == real(page)))
+        && (model == page || is_same_file(model, page))
     {
         bail!("--report {}: --out writes this file; give another name", page.display());
     }

@@ -77,14 +77,10 @@ pub(super) fn run(args: &GenerateArgs) -> anyhow::Result<ExitCode> {
     let generated =
         generate(&model, &points, &settings).with_context(|| path.display().to_string())?;
     common::notes(args.program.cell.quiet, generated.notes.iter().chain(&model.assumed()));
-    let files: Vec<(PathBuf, &[u8])> = generated
-        .outputs
-        .iter()
-        .map(|file| (PathBuf::from(&file.path), file.bytes.as_slice()))
-        .collect();
-    output::write_folder(&args.out, &files)?;
+    let files = &generated.outputs;
+    output::write_folder(&args.out, files.iter().map(|file| (&file.path, &file.bytes)))?;
     let written: Vec<String> =
-        files.iter().map(|(path, _)| args.out.join(path).display().to_string()).collect();
+        files.iter().map(|file| args.out.join(&file.path).display().to_string()).collect();
     common::print(
         args.program.format,
         || json(&model.name, &generated, &written),

@@ -7,8 +7,9 @@ use std::process::ExitCode;
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
 
+use super::common::{self, note_once};
 use super::logs::{Reader, Ready, read_all};
-use super::{common, output};
+use super::output;
 use crate::arm::effects;
 use crate::arm::robot::Model;
 use crate::learn::identify::{
@@ -141,7 +142,7 @@ pub(super) fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
             "the wrist is coupled: motor 6 turns {coupling:.3} times with axis 5; the robot did not \
              state it"
         );
-        tell(args, &mut basis, text);
+        note_once(args.quiet, &mut basis.notes, text);
     }
     if found.quality.grade == Grade::None {
         bail!(
@@ -151,10 +152,14 @@ pub(super) fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
         );
     }
     if found.quality.grade == Grade::Poor {
-        tell(args, &mut basis, format!("the model is {}", found.quality.sentence()));
+        note_once(
+            args.quiet,
+            &mut basis.notes,
+            format!("the model is {}", found.quality.sentence()),
+        );
     }
     for text in doubts(&found) {
-        tell(args, &mut basis, text);
+        note_once(args.quiet, &mut basis.notes, text);
     }
     if args.descent {
         basis.descent = by_descent(&model, &found);
@@ -208,14 +213,14 @@ fn read_data(
     basis.notes = reader.notes;
     basis.logs = training.iter().map(|ready| ready.record.clone()).collect();
     for text in repeated(&basis.logs, &basis.validation) {
-        tell(args, basis, text);
+        note_once(args.quiet, &mut basis.notes, text);
     }
     basis.torque = training.first().map_or_else(String::new, |ready| ready.origin.clone());
     let weight = training.iter().find_map(|ready| ready.weight);
     let samples = joined(training)?;
     for joint in &samples.resting {
         let text = format!("joint {} does not move: nothing of it is determined", joint + 1);
-        tell(args, basis, text);
+        note_once(args.quiet, &mut basis.notes, text);
     }
     for (joint, share) in samples.share_at_limits().into_iter().enumerate() {
         if share > 0.0 {
@@ -225,7 +230,7 @@ fn read_data(
                 joint + 1,
                 100.0 * share
             );
-            tell(args, basis, text);
+            note_once(args.quiet, &mut basis.notes, text);
         }
     }
     Ok(Data { samples, validation, weight })
@@ -273,14 +278,6 @@ fn traces(found: &Identified, model: &Model, samples: &Samples, title: String) -
         traces.power[1].push(power[1]);
     }
     traces
-}
-
-fn tell(args: &IdentifyArgs, basis: &mut report::Basis, text: String) {
-    if basis.notes.contains(&text) {
-        return;
-    }
-    common::note(args.quiet, &text);
-    basis.notes.push(text);
 }
 
 /// Maximum relative residual of a good model.

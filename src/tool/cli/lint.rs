@@ -7,6 +7,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
+use serde::Serialize;
 use similar::TextDiff;
 
 use super::backup::{self, is_shared};
@@ -142,12 +143,7 @@ fn fix(args: &LintArgs, programs: &mut Programs) -> anyhow::Result<Report> {
         }
         return Ok(report);
     }
-    let staged: anyhow::Result<Vec<output::Staged>> = pairs()
-        .map(|(old, new)| output::stage(Path::new(&old.path), &new.stored(&new.bytes)))
-        .collect();
-    for file in staged? {
-        file.put()?;
-    }
+    output::write_all(pairs().map(|(old, new)| (&old.path, new.stored(&new.bytes))))?;
     note(args.cell.quiet, &format!("{applied} fixes applied, {withdrawn} taken back"));
     programs.files = files;
     Ok(report)
@@ -352,6 +348,11 @@ fn drop_known(report: &mut Report, files: &[SourceFile], path: &Path) -> anyhow:
     Ok(())
 }
 
+fn pretty(out: &mut impl Write, document: &impl Serialize) -> anyhow::Result<()> {
+    serde_json::to_writer_pretty(&mut *out, document)?;
+    Ok(writeln!(out)?)
+}
+
 fn write(args: &LintArgs, setup: &Setup, report: &Report) -> anyhow::Result<()> {
     let files = &setup.programs.files;
     let mut out = std::io::BufWriter::new(std::io::stdout().lock());
@@ -363,19 +364,10 @@ fn write(args: &LintArgs, setup: &Setup, report: &Report) -> anyhow::Result<()> 
             write!(out, "{}", report::lint::text::summary(report))?;
         }
         LintFormat::Concise => write!(out, "{}", report::lint::text::concise(report, files))?,
-        LintFormat::Json => {
-            serde_json::to_writer_pretty(&mut out, &report::lint::json::json(report, files))?;
-            writeln!(out)?;
-        }
-        LintFormat::Sarif => {
-            serde_json::to_writer_pretty(&mut out, &report::lint::sarif::sarif(report, files))?;
-            writeln!(out)?;
-        }
+        LintFormat::Json => pretty(&mut out, &report::lint::json::json(report, files))?,
+        LintFormat::Sarif => pretty(&mut out, &report::lint::sarif::sarif(report, files))?,
         LintFormat::Github => write!(out, "{}", report::lint::github::github(report, files))?,
-        LintFormat::Gitlab => {
-            serde_json::to_writer_pretty(&mut out, &report::lint::gitlab::gitlab(report, files))?;
-            writeln!(out)?;
-        }
+        LintFormat::Gitlab => pretty(&mut out, &report::lint::gitlab::gitlab(report, files))?,
         LintFormat::Junit => write!(out, "{}", report::lint::junit::junit(report, files))?,
     }
     out.flush()?;

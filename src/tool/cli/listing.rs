@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use memchr::memmem::find;
+
 use super::input::{Input, Listing};
 use crate::tool::retrofit::{OutputFile, OutputKind, Retrofit, Source};
 
@@ -118,10 +120,6 @@ pub(super) fn without(bytes: &[u8], names: &[String]) -> Vec<u8> {
         }
     }
     out
-}
-
-fn find(bytes: &[u8], part: &[u8]) -> Option<usize> {
-    bytes.windows(part.len()).position(|window| window == part)
 }
 
 #[cfg(test)]

@@ -59,11 +59,7 @@ pub(super) struct Reader<'a> {
 
 impl Reader<'_> {
     fn tell(&mut self, text: String) {
-        if self.notes.contains(&text) {
-            return;
-        }
-        common::note(self.quiet, &text);
-        self.notes.push(text);
+        common::note_once(self.quiet, &mut self.notes, text);
     }
 
     /// Checks a log and extracts its samples.

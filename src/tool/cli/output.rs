@@ -59,13 +59,28 @@ impl Staged {
     }
 }
 
+/// Writes files; none is replaced before all are written.
+pub(super) fn write_all<P: AsRef<Path>, B: AsRef<[u8]>>(
+    files: impl IntoIterator<Item = (P, B)>,
+) -> anyhow::Result<()> {
+    let staged: anyhow::Result<Vec<Staged>> =
+        files.into_iter().map(|(path, bytes)| stage(path.as_ref(), bytes.as_ref())).collect();
+    staged?.into_iter().try_for_each(Staged::put)
+}
+
+/// Whether two paths lead to the same existing file.
+pub(super) fn is_same_file(a: &Path, b: &Path) -> bool {
+    a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b))
+}
+
 /// Writes files into a folder, with paths relative to it. A new folder appears all at once; in an
 /// existing one, no file is replaced before all are written.
-pub(super) fn write_folder(folder: &Path, files: &[(PathBuf, &[u8])]) -> anyhow::Result<()> {
+pub(super) fn write_folder<P: AsRef<Path>, B: AsRef<[u8]>>(
+    folder: &Path,
+    files: impl IntoIterator<Item = (P, B)>,
+) -> anyhow::Result<()> {
     if folder.exists() {
-        let staged: Result<Vec<Staged>, _> =
-            files.iter().map(|(path, bytes)| stage(&folder.join(path), bytes)).collect();
-        return staged?.into_iter().try_for_each(Staged::put);
+        return write_all(files.into_iter().map(|(path, bytes)| (folder.join(path), bytes)));
     }
     let beside = parent(folder);
     std::fs::create_dir_all(beside).with_context(|| failed(folder))?;
@@ -74,7 +89,7 @@ pub(super) fn write_folder(folder: &Path, files: &[(PathBuf, &[u8])]) -> anyhow:
         .tempdir_in(beside)
         .with_context(|| failed(folder))?;
     for (path, bytes) in files {
-        write(&whole.path().join(path), bytes)?;
+        write(&whole.path().join(path), bytes.as_ref())?;
     }
     #[cfg(unix)]
     {

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use anyhow::bail;
+use memchr::memmem;
 
 use super::input::Input;
 use super::{backinfo, listing};
@@ -84,7 +85,7 @@ impl Streams {
 /// The range of the value of a string datum in a module text.
 fn datum(bytes: &[u8], name: &str) -> Option<std::ops::Range<usize>> {
     let begin = format!("{name}:=\"").into_bytes();
-    let start = bytes.windows(begin.len()).position(|window| window == begin)? + begin.len();
+    let start = memmem::find(bytes, &begin)? + begin.len();
     let length = bytes[start..].iter().position(|b| *b == b'"')?;
     Some(start..start + length)
 }
@@ -93,5 +94,5 @@ fn datum(bytes: &[u8], name: &str) -> Option<std::ops::Range<usize>> {
 fn in_head(bytes: &[u8], text: &[u8]) -> bool {
     let lines = bytes.split(|b| *b == b'\n').skip(1);
     let mut head = lines.take_while(|line| line.trim_ascii_start().starts_with(b"!"));
-    head.any(|line| line.windows(text.len()).any(|window| window == text))
+    head.any(|line| memmem::find(line, text).is_some())
 }

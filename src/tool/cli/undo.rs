@@ -6,7 +6,6 @@
 //! a file that was edited since is neither restored nor deleted.
 
 use std::borrow::Cow;
-use std::fmt::Write as _;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
@@ -116,9 +115,7 @@ impl Plan<'_> {
             fs::remove_dir_all(&self.folder)
                 .with_context(|| format!("cannot replace '{}'", self.folder.display()))?;
         }
-        let files: Vec<(PathBuf, &[u8])> =
-            self.files.iter().map(|(path, bytes)| (path.clone(), bytes.as_ref())).collect();
-        output::write_folder(&self.folder, &files)?;
+        output::write_folder(&self.folder, self.files.iter().map(|(path, bytes)| (path, bytes)))?;
         Ok(self.folder.clone())
     }
 }
@@ -265,8 +262,5 @@ fn shown(path: &Path) -> String {
 }
 
 fn checksum(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().fold(String::new(), |mut text, byte| {
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
+    format!("{:x}", Sha256::digest(bytes))
 }

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 
 use super::common::Job;
+use super::output::is_same_file;
 use super::{output, undo};
 use crate::rapid::text::{FileId, SourceFile};
 use crate::tool::retrofit::{OutputFile, OutputKind, Retrofit};
@@ -42,9 +43,7 @@ fn rest_of_backup(
 ) -> anyhow::Result<Vec<(PathBuf, Vec<u8>)>> {
     let known: BTreeSet<PathBuf> =
         result.outputs.iter().map(|file| PathBuf::from(&file.path)).collect();
-    let real = |path: &Path| path.canonicalize().ok();
-    let streams: Vec<_> = job.streams.modules.iter().map(|path| real(path)).collect();
-    let is_stream = |path: &Path| streams.contains(&real(path));
+    let is_stream = |path: &Path| job.streams.modules.iter().any(|one| is_same_file(one, path));
     let mut rest = Vec::new();
     let mut folders = vec![root.to_owned()];
     while let Some(folder) = folders.pop() {
@@ -97,13 +96,9 @@ pub(super) fn write_folder(
     result: &Retrofit,
     backup: Option<&Path>,
 ) -> anyhow::Result<Vec<String>> {
-    let real = |path: &Path| path.canonicalize().ok();
     for file in &result.outputs {
         let path = folder.join(&file.path);
-        let target = real(&path);
-        if target.is_some()
-            && job.files.iter().any(|source| real(Path::new(&source.file.path)) == target)
-        {
+        if job.files.iter().any(|source| is_same_file(Path::new(&source.file.path), &path)) {
             bail!(
                 "'{}' is a file of the program itself; name another folder, or give --in-place, \
                  which keeps the originals",
@@ -111,18 +106,16 @@ pub(super) fn write_folder(
             );
         }
     }
-    let stored: Vec<(PathBuf, Cow<'_, [u8]>)> =
-        new_first(result).map(|file| (PathBuf::from(&file.path), stored(job, file))).collect();
     let rest = match backup {
         Some(root) => {
             let out = std::path::absolute(folder)?;
-            rest_of_backup(root, &real(&out).unwrap_or(out), (job, result))?
+            rest_of_backup(root, &out.canonicalize().unwrap_or(out), (job, result))?
         }
         None => Vec::new(),
     };
-    let files = stored.iter().map(|(path, bytes)| (path.clone(), bytes.as_ref()));
-    let unchanged = rest.iter().map(|(path, bytes)| (path.clone(), bytes.as_slice()));
-    output::write_folder(folder, &files.chain(unchanged).collect::<Vec<_>>())?;
+    let files = new_first(result).map(|file| (Path::new(&file.path), stored(job, file)));
+    let unchanged = rest.iter().map(|(path, bytes)| (path.as_path(), Cow::from(bytes)));
+    output::write_folder(folder, files.chain(unchanged))?;
     let written = result.outputs.iter().map(|file| folder.join(&file.path));
     let written = written.chain(rest.iter().map(|(path, _)| folder.join(path)));
     Ok(written.map(|path| path.display().to_string()).collect())

@@ -89,13 +89,12 @@ pub(super) fn find(
     path: &Path,
     unreadable: &mut Vec<Unreadable>,
 ) -> Result<Vec<Found>, InputError> {
-    let metadata = fs::metadata(path)
-        .map_err(|error| InputError::Unreadable { path: shown(path), reason: error.to_string() })?;
-    if metadata.is_dir() {
-        if let Err(error) = fs::read_dir(path) {
-            let reason = error.to_string();
-            return Err(InputError::Unreadable { path: shown(path), reason });
-        }
+    let unusable = |error: std::io::Error| InputError::Unreadable {
+        path: shown(path),
+        reason: error.to_string(),
+    };
+    if fs::metadata(path).map_err(unusable)?.is_dir() {
+        fs::read_dir(path).map_err(unusable)?;
         let mut files = Vec::new();
         walk(path, 0, &mut files, unreadable);
         let (programs, mut modules): (Vec<PathBuf>, Vec<PathBuf>) =

@@ -20,7 +20,8 @@ struct Finding {
     name: String,
     joints: usize,
     problems: Vec<String>,
-    lacks: Vec<(Use, Vec<Lack>)>,
+    /// What each command would lack.
+    lacks: Vec<(Use, Vec<String>)>,
 }
 
 /// Checks the named robots, or the whole catalogue.
@@ -54,7 +55,8 @@ fn checked(model: &Model, estimated: &Model) -> Finding {
     if missed > 0 {
         problems.push(format!("kinematics: {missed} of {POSES} poses do not lead back"));
     }
-    let lacks = Use::ALL.map(|of| (of, lacking(estimated, of))).to_vec();
+    let words = |of: Use| lacking(estimated, of).iter().map(Lack::to_string).collect();
+    let lacks = Use::ALL.map(|of| (of, words(of))).to_vec();
     Finding { name: model.name.clone(), joints: model.dof, problems, lacks }
 }
 
@@ -90,20 +92,16 @@ fn text(finding: &Finding) -> String {
         let _ = writeln!(text, "  {problem}");
     }
     for (command, missing) in finding.lacks.iter().filter(|(_, missing)| !missing.is_empty()) {
-        let _ = writeln!(text, "  {command} lacks {}", words(missing).join(", "));
+        let _ = writeln!(text, "  {command} lacks {}", missing.join(", "));
     }
     text
-}
-
-fn words(lacks: &[Lack]) -> Vec<String> {
-    lacks.iter().map(ToString::to_string).collect()
 }
 
 fn document(finding: &Finding) -> Value {
     let lacks: Map<String, Value> = finding
         .lacks
         .iter()
-        .map(|(command, missing)| (command.to_string(), json!(words(missing))))
+        .map(|(command, missing)| (command.to_string(), json!(missing)))
         .collect();
     json!({
         "name": finding.name,
