@@ -227,21 +227,11 @@ fn table(grades: &Grades) -> String {
         grades.confusion.values().flat_map(|row| row.keys().copied()).collect();
     columns.sort_unstable();
     columns.dedup();
-    let _ = writeln!(
-        text,
-        "{:<22}{}",
-        "truth",
-        columns.iter().fold(String::new(), |mut row, name| {
-            let _ = write!(row, "{name:>16}");
-            row
-        })
-    );
+    let names: String = columns.iter().map(|name| format!("{name:>16}")).collect();
+    let _ = writeln!(text, "{:<22}{names}", "truth");
     for (truth, row) in &grades.confusion {
-        let _ = write!(text, "{truth:<22}");
-        for column in &columns {
-            let _ = write!(text, "{:>16}", row.get(column).copied().unwrap_or(0));
-        }
-        text.push('\n');
+        let count = |column: &&str| format!("{:>16}", row.get(column).copied().unwrap_or(0));
+        let _ = writeln!(text, "{truth:<22}{}", columns.iter().map(count).collect::<String>());
     }
     text.push_str("\nrate                          of      %   95 % interval   asked\n");
     for rate in &grades.rates {

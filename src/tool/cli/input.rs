@@ -126,12 +126,9 @@ pub(super) fn read(paths: &[PathBuf]) -> Result<Input, InputError> {
                 input.files.push(InputFile { source, relative, place, named });
             }
             Err(reason) => {
-                let path = shown(&file.path);
-                first_error.get_or_insert_with(|| InputError::Unreadable {
-                    path: path.clone(),
-                    reason: reason.clone(),
-                });
-                input.unreadable.push(Unreadable { path, reason });
+                let unreadable = Unreadable { path: shown(&file.path), reason };
+                first_error.get_or_insert_with(|| InputError::Unreadable(unreadable.clone()));
+                input.unreadable.push(unreadable);
             }
         }
     }

@@ -113,7 +113,8 @@ pub(super) fn write_folder(
         }
         None => Vec::new(),
     };
-    let files = new_first(result).map(|file| (Path::new(&file.path), stored(job, file)));
+    let files =
+        new_first(result).map(|file| (Path::new(&file.path), encoded(job, file, &file.bytes)));
     let unchanged = rest.iter().map(|(path, bytes)| (path.as_path(), Cow::from(bytes)));
     output::write_folder(folder, files.chain(unchanged))?;
     let written = result.outputs.iter().map(|file| folder.join(&file.path));
@@ -136,7 +137,7 @@ pub(super) fn write_in_place(
 ) -> anyhow::Result<Vec<String>> {
     let mut changes = Vec::new();
     for file in new_first(result) {
-        let (path, after) = (place(job, file), stored(job, file));
+        let (path, after) = (place(job, file), encoded(job, file, &file.bytes));
         let before = match original(job, file) {
             Some((path, bytes)) => {
                 // An unreadable file could not be restored.
@@ -171,11 +172,7 @@ pub(super) fn write_in_place(
     Ok(paths.map(|path| path.display().to_string()).collect())
 }
 
-/// The bytes of an output in the encoding of its original file.
-fn stored<'a>(job: &Job, file: &'a OutputFile) -> Cow<'a, [u8]> {
-    encoded(job, file, &file.bytes)
-}
-
+/// Bytes of an output in the encoding of its original file.
 fn encoded<'a>(job: &Job, file: &OutputFile, bytes: &'a [u8]) -> Cow<'a, [u8]> {
     match file.input.and_then(|i| job.files.get(i)) {
         Some(source) => source.file.stored(bytes),

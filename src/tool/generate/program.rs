@@ -5,7 +5,7 @@ use super::follow::{self, Followed, Sampled, TOLERANCE};
 use super::measure::Measure;
 use super::moves::{Moves, Target};
 use super::settings::Form;
-use crate::arm::kinematics::limits_ok;
+use crate::arm::kinematics::{Conf, limits_ok};
 use crate::arm::robot::Model;
 use crate::rapid::ir::number::number;
 use crate::retime::motion::stream::Stream;
@@ -50,24 +50,13 @@ pub(super) fn moves(
     moves: &Moves,
 ) -> Result<Vec<OutputFile>, GenerateError> {
     let robtarget = |target: &Target| {
-        let p = target.pose.translation.vector * 1e3;
+        let position = target.pose.translation.vector * 1e3;
         let r = target.pose.rotation;
-        let length = |x: f64| number(x, 4);
-        let part = |x: f64| number(x, 9);
-        let c = target.conf;
+        let [x, y, z] = [position.x, position.y, position.z].map(|x| number(x, 4));
+        let [w, i, j, k] = [r.w, r.i, r.j, r.k].map(|part| number(part, 9));
+        let Conf { cf1, cf4, cf6, cfx } = target.conf;
         format!(
-            "[[{},{},{}],[{},{},{},{}],[{},{},{},{}],[9E9,9E9,9E9,9E9,9E9,9E9]]",
-            length(p.x),
-            length(p.y),
-            length(p.z),
-            part(r.w),
-            part(r.i),
-            part(r.j),
-            part(r.k),
-            c.cf1,
-            c.cf4,
-            c.cf6,
-            c.cfx,
+            "[[{x},{y},{z}],[{w},{i},{j},{k}],[{cf1},{cf4},{cf6},{cfx}],[9E9,9E9,9E9,9E9,9E9,9E9]]"
         )
     };
     let list: Vec<GeneratedMove> = moves

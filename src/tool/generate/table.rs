@@ -53,20 +53,14 @@ pub enum Amount {
 pub enum TableError {
     /// The columns match no kind of points.
     #[error(
-        "the header is '{header}': give the columns t,q1..q6 (a timed trajectory), q1..q6 (joint \
+        "the header is '{0}': give the columns t,q1..q6 (a timed trajectory), q1..q6 (joint \
          positions, rad; q1_deg.. for degrees) or x,y,z,w,i,j,k[,cf1,cf4,cf6,cfx] (poses), each \
          also with speed,zone"
     )]
-    Columns {
-        /// The first line.
-        header: String,
-    },
+    Columns(String),
     /// A column name occurs twice.
-    #[error("the column '{name}' stands twice in the header")]
-    Twice {
-        /// Its name.
-        name: String,
-    },
+    #[error("the column '{0}' stands twice in the header")]
+    DuplicateColumn(String),
     /// Some columns of a kind are missing.
     #[error("the column '{missing}' is missing beside '{present}'")]
     Missing {
@@ -87,7 +81,7 @@ pub enum TableError {
     },
     /// There are no rows, or only one row of a trajectory.
     #[error("{0} rows below the header: {1}")]
-    Short(usize, &'static str),
+    TooFewRows(usize, &'static str),
 }
 
 /// The columns of a file by name.
@@ -113,7 +107,7 @@ impl Columns {
             .collect();
         for (i, name) in names.iter().enumerate() {
             if !name.is_empty() && names[..i].contains(name) {
-                return Err(TableError::Twice { name: name.clone() });
+                return Err(TableError::DuplicateColumn(name.clone()));
             }
         }
         Ok(Columns { names, delimiter })
@@ -161,7 +155,7 @@ impl Layout {
         let millimetres = columns.all(&owned(&["x_mm", "y_mm", "z_mm"]))?;
         let mm = metres.is_none();
         let Some(position) = metres.or(millimetres) else {
-            return Err(TableError::Columns { header: header.chars().take(80).collect() });
+            return Err(TableError::Columns(header.chars().take(80).collect()));
         };
         let Some(rotation) = columns.all(&owned(&["w", "i", "j", "k"]))? else {
             let (missing, present) = ("w".to_owned(), columns.names[position[0]].clone());
@@ -270,7 +264,7 @@ pub fn read(bytes: &[u8]) -> Result<Table, TableError> {
     let rows: Vec<Row<'_>> =
         rows.iter().map(|(line, record)| Row { record, columns: &columns, line: *line }).collect();
     if rows.is_empty() {
-        return Err(TableError::Short(0, "give at least one point"));
+        return Err(TableError::TooFewRows(0, "give at least one point"));
     }
     let (points, length) = points(&rows, &layout, &mut notes)?;
     let amounts = |column| -> Result<Vec<Option<Amount>>, TableError> {
@@ -301,7 +295,7 @@ fn points(
                 }
             }
             if t.len() < 2 {
-                return Err(TableError::Short(t.len(), "a trajectory needs at least two"));
+                return Err(TableError::TooFewRows(t.len(), "a trajectory needs at least two"));
             }
             Ok((Points::Trajectory(t.iter().map(|x| x - t[0]).collect(), q), length))
         }

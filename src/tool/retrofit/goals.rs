@@ -97,7 +97,7 @@ fn shared_time(
             })
             .collect();
         let shared = Shared { curves: known.unwrap_or_default(), cycle };
-        let times = shared.times()?;
+        let times = shared.cycle.share(&shared.curves)?;
         looks += 1;
         let learnt = curves
             .par_iter_mut()
@@ -108,12 +108,6 @@ fn shared_time(
             return Some(Plan { goals, shared: Some(shared) });
         }
         cycle = shared.cycle;
-    }
-}
-
-impl Shared {
-    fn times(&self) -> Option<Vec<f64>> {
-        self.cycle.share(&self.curves)
     }
 }
 
@@ -148,7 +142,7 @@ impl Plan {
                 is_late[task] = true;
             }
         }
-        let Some(new) = shared.times() else { return Vec::new() };
+        let Some(new) = shared.cycle.share(&shared.curves) else { return Vec::new() };
         let goals = self.goals.iter_mut().zip(new).zip(is_late).enumerate();
         goals
             .filter_map(|(task, ((goal, time), is_late))| {

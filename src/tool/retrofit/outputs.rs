@@ -4,10 +4,10 @@ use super::candidate::Candidate;
 use super::emission_context::EmissionContext;
 use super::emitted_sites::{emitted_site, emitted_wait};
 use super::error::RetrofitError;
-use super::files::{OutputFile, unchanged};
+use super::files::{OutputFile, edited, unchanged};
 use super::job::Original;
 use super::relocated_waits::RelocatedWait;
-use crate::rapid::text::{self, Span};
+use crate::rapid::text::Span;
 use crate::tool::emit;
 
 /// Emits the streams of the candidates and the relocated waits; other files stay unchanged.
@@ -22,22 +22,12 @@ pub(super) fn emitted(
         .filter_map(|site| emitted_site(context, original, candidates, site))
         .collect();
     emitted_sites.extend(waits.iter().filter_map(|wait| emitted_wait(context, original, wait)));
-    let mut outputs = unchanged(files);
     if emitted_sites.is_empty() {
-        return Ok(Outputs { files: outputs, guards: Vec::new() });
+        return Ok(Outputs { files: unchanged(files), guards: Vec::new() });
     }
     let emitted = emit::emit(&context.emission, &emitted_sites)?;
-    for (i, source) in files.iter().enumerate() {
-        let edits: Vec<text::Edit> =
-            emitted.edits.iter().filter(|e| e.span.file.0 as usize == i).cloned().collect();
-        if edits.is_empty() {
-            continue;
-        }
-        // Insertions at distinct places cannot overlap.
-        let bytes =
-            text::apply(&source.file.bytes, &edits).unwrap_or_else(|_| source.file.bytes.clone());
-        outputs[i] = OutputFile::changed(i, source, bytes);
-    }
+    // Insertions at distinct places cannot overlap.
+    let mut outputs = edited(files, emitted.edits.into_iter()).unwrap_or_else(|| unchanged(files));
     let entry_file = &files[context.beside];
     let folder = entry_file.relative.rsplit_once('/').map_or("", |(folder, _)| folder);
     let end_of_line = emit::end_of_line(&entry_file.file.bytes);

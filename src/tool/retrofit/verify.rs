@@ -13,7 +13,8 @@ use super::relocated_waits::{Fault, RelocatedWait, folded};
 use super::settings::{Budget, Settings};
 use super::simulated::{Simulated, TIME_TOLERANCE};
 use super::speed_slots::Slot;
-use super::{verify_speeds, verify_streams};
+use super::verify_speeds::compare_speeds;
+use super::verify_streams::{all_failed, compare_streams, reordering, slowing};
 use crate::arm::robot::Model;
 use crate::rapid::syntax;
 use crate::retime::motion::{Options, Simulation, simulate};
@@ -110,11 +111,11 @@ pub(super) fn verify(
         Rewrite::Streams { candidates, waits } => {
             let emitted = &attempt.simulated.simulation;
             attempt.failed = if !text_holds {
-                verify_streams::all_failed(candidates, "the emitted text could not be read again")
+                all_failed(candidates, "the emitted text could not be read again")
             } else if !order_kept && waits.is_empty() {
-                verify_streams::reordering(original, emitted, candidates)
+                reordering(original, emitted, candidates)
             } else if order_kept && !cycle_kept {
-                verify_streams::slowing(original, emitted, candidates)
+                slowing(original, emitted, candidates)
             } else {
                 Vec::new()
             };
@@ -124,25 +125,15 @@ pub(super) fn verify(
                     attempt.wait_faults.entry(index).or_insert(Fault::Other);
                 }
             } else if attempt.failed.is_empty() {
-                let figures =
-                    verify_streams::compared(original, emitted, model, settings, candidates);
-                let held = figures.failed.is_empty();
-                attempt.failed = figures.failed;
                 let verification = &mut attempt.verification;
-                verification.worst = figures.worst;
-                verification.intended_error_rad = figures.intended_error_rad;
-                verification.note("every stream keeps limits, path and ends", held);
-                verification.note("every stream runs as intended at each moment", held);
+                attempt.failed =
+                    compare_streams(original, emitted, model, settings, candidates, verification);
             }
         }
         Rewrite::Speeds { slots, factors } if order_kept => {
             let emitted = &attempt.simulated.simulation;
-            let speeds = (slots, factors);
-            let figures = verify_speeds::compared(original, emitted, model, settings, speeds);
-            let verification = &mut attempt.verification;
-            verification.worst = figures.worst;
-            verification.note("targets and zones are those of before", figures.same_paths);
-            verification.note("no programmed speed is exceeded", figures.keeps_ceilings);
+            let (speeds, verification) = ((slots, factors), &mut attempt.verification);
+            compare_speeds(original, emitted, model, settings, speeds, verification);
         }
         Rewrite::Speeds { .. } => {}
     }

@@ -1,5 +1,6 @@
 //! Verifies other programmed speeds: the same path, and no speed above a ceiling.
 
+use super::figures::Verification;
 use super::job::Original;
 use super::order::are_close;
 use super::settings::Settings;
@@ -17,36 +18,29 @@ const STEP: f64 = 0.002;
 /// Maximum distance of the ends of the same target, rad.
 const SAME_END: f64 = 1e-6;
 
-pub(super) struct SpeedFigures {
-    /// Worst figures of all changed runs.
-    pub(super) worst: Check,
-    /// Whether targets and zones are unchanged.
-    pub(super) same_paths: bool,
-    /// Whether no programmed speed is exceeded.
-    pub(super) keeps_ceilings: bool,
-}
-
-/// Compares the runs of an emitted program that has the events of the original. `factors`: one for
-/// each slot.
-pub(super) fn compared(
+/// Compares the runs of an emitted program that has the events of the original, and adds the result
+/// to `verification`. `factors`: one for each slot.
+pub(super) fn compare_speeds(
     original: &Original<'_>,
     emitted: &Simulation,
     model: &Model,
     settings: &Settings,
     (slots, factors): (&[Slot], &[f64]),
-) -> SpeedFigures {
-    let mut figures = SpeedFigures { worst: Check::none(), same_paths: true, keeps_ceilings: true };
+    verification: &mut Verification,
+) {
+    let (mut same_paths, mut keep_ceilings) = (true, true);
     let before = &original.cycle.simulation;
     for (slot, factor) in slots.iter().zip(factors).filter(|(s, f)| s.is_changed(**f)) {
         for event in &slot.events {
             let runs = (&before.events[*event].what, &emitted.events[*event].what);
             let (What::Run(was), What::Run(now)) = runs else { continue };
-            figures.same_paths &= now.problem.is_none() && same_path(was, now);
-            figures.keeps_ceilings &= *factor <= 1.0 || keeps_ceilings(was, now, &settings.freedom);
-            figures.worst = figures.worst.max(&shares(model, now));
+            same_paths &= now.problem.is_none() && same_path(was, now);
+            keep_ceilings &= *factor <= 1.0 || keeps_ceilings(was, now, &settings.freedom);
+            verification.worst = verification.worst.max(&shares(model, now));
         }
     }
-    figures
+    verification.note("targets and zones are those of before", same_paths);
+    verification.note("no programmed speed is exceeded", keep_ceilings);
 }
 
 fn same_path(was: &Run, now: &Run) -> bool {

@@ -35,19 +35,13 @@ pub(in crate::tool::cli) enum InputError {
     Nothing,
     /// The folder contains no RAPID.
     #[error(
-        "no RAPID in '{path}': looked in it and its folders for {SOUGHT}; name a file to read it \
+        "no RAPID in '{0}': looked in it and its folders for {SOUGHT}; name a file to read it \
          whatever its extension"
     )]
-    NoRapid {
-        /// The folder.
-        path: String,
-    },
+    NoRapid(String),
     /// None of the modules of a `.pgf` exists.
-    #[error("'{path}' lists no module that can be read; name the module files themselves")]
-    EmptyProgram {
-        /// The program file.
-        path: String,
-    },
+    #[error("'{0}' lists no module that can be read; name the module files themselves")]
+    EmptyProgram(String),
     /// A `.pgf` lists a file outside its folder, which would be copied and changed with the
     /// program.
     #[error(
@@ -65,13 +59,8 @@ pub(in crate::tool::cli) enum InputError {
         why: &'static str,
     },
     /// The path cannot be read.
-    #[error("cannot read '{path}': {reason}; check the path and its permissions")]
-    Unreadable {
-        /// The path.
-        path: String,
-        /// The reason.
-        reason: String,
-    },
+    #[error("cannot read '{}': {}; check the path and its permissions", .0.path, .0.reason)]
+    Unreadable(Unreadable),
 }
 
 pub(super) struct Found {
@@ -89,10 +78,7 @@ pub(super) fn find(
     path: &Path,
     unreadable: &mut Vec<Unreadable>,
 ) -> Result<Vec<Found>, InputError> {
-    let unusable = |error: std::io::Error| InputError::Unreadable {
-        path: shown(path),
-        reason: error.to_string(),
-    };
+    let unusable = |error: std::io::Error| unreadable_input(path, error.to_string());
     if fs::metadata(path).map_err(unusable)?.is_dir() {
         fs::read_dir(path).map_err(unusable)?;
         let mut files = Vec::new();
@@ -111,7 +97,7 @@ pub(super) fn find(
         modules.sort_by_key(|file| shown(file));
         modules.dedup_by_key(|file| shown(file));
         if modules.is_empty() {
-            return Err(InputError::NoRapid { path: shown(path) });
+            return Err(InputError::NoRapid(shown(path)));
         }
         let modules = modules.into_iter().map(|file| found_below(path, file, false));
         return Ok(modules.chain(listings).collect());
@@ -120,6 +106,10 @@ pub(super) fn find(
         return program(path, unreadable);
     }
     Ok(vec![found_below(path.parent().unwrap_or(Path::new("")), path.to_path_buf(), true)])
+}
+
+fn unreadable_input(path: &Path, reason: String) -> InputError {
+    InputError::Unreadable(Unreadable { path: shown(path), reason })
 }
 
 fn found_below(root: &Path, path: PathBuf, named: bool) -> Found {
@@ -178,7 +168,7 @@ fn program(path: &Path, unreadable: &mut Vec<Unreadable>) -> Result<Vec<Found>, 
         }
     }
     if files.is_empty() {
-        return Err(InputError::EmptyProgram { path: shown(path) });
+        return Err(InputError::EmptyProgram(shown(path)));
     }
     files.push(listing);
     Ok(files)
@@ -187,8 +177,7 @@ fn program(path: &Path, unreadable: &mut Vec<Unreadable>) -> Result<Vec<Found>, 
 /// The paths between `<Module>` and `</Module>`, relative to the program file.
 fn listed(path: &Path) -> Result<Vec<PathBuf>, InputError> {
     const BEGIN: &str = "<Module>";
-    let unreadable = |reason| InputError::Unreadable { path: shown(path), reason };
-    let bytes = bytes_of(path).map_err(unreadable)?;
+    let bytes = bytes_of(path).map_err(|reason| unreadable_input(path, reason))?;
     let text = decode(&bytes).text;
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut modules = Vec::new();
