@@ -14,7 +14,7 @@ use crate::retime::motion::timeline::What;
 use crate::retime::motion::{Options, Simulation};
 use crate::retime::path::joint_path::DOF;
 use crate::tool::emit::{self, EmitError, GeneratedMove, GeneratedNames, jointtarget, stream_time};
-use crate::tool::retrofit::{OutputFile, parses, read_again, run_again};
+use crate::tool::retrofit::{OutputFile, file_and_line, parses, read_again, run_again};
 
 /// Maximum distance of a reached point from the requested one, rad.
 const REACHED: f64 = 1e-4;
@@ -120,9 +120,8 @@ fn simulated(model: &Model, outputs: &[OutputFile]) -> Result<Simulation, Genera
         .map_err(|error| broken(error.to_string()))?;
     match simulation.unresolved.first() {
         Some(note) => {
-            let file = &read_again(outputs)[note.span.file.0 as usize].file;
-            let line = file.position(note.span.start).line;
-            Err(broken(format!("{}:{line}: {}", file.path, note.reason)))
+            let place = file_and_line(&read_again(outputs), note.span);
+            Err(broken(format!("{place}: {}", note.reason)))
         }
         None => Ok(simulation),
     }

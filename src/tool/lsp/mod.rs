@@ -185,7 +185,7 @@ impl<R: Fn(&Path) -> Programs> Server<R> {
         for (uri, analysis) in self.workspace.analyse(uri) {
             stale.remove(&uri);
             let diagnostics =
-                analysis.own().map(|finding| diagnostic(finding, analysis.file())).collect();
+                analysis.own().map(|finding| diagnostic(finding, &analysis.file)).collect();
             messages.push(publish(uri.clone(), diagnostics));
             self.analyses.insert(uri, analysis);
         }
@@ -201,12 +201,10 @@ impl<R: Fn(&Path) -> Programs> Server<R> {
                 return Response::new_err(id, ErrorCode::MethodNotFound as i32, message);
             }
         };
-        answer.map_or_else(
-            |error| {
-                Response::new_err(id.clone(), ErrorCode::InvalidParams as i32, error.to_string())
-            },
-            |result| Response::new_ok(id.clone(), result),
-        )
+        match answer {
+            Ok(result) => Response::new_ok(id, result),
+            Err(error) => Response::new_err(id, ErrorCode::InvalidParams as i32, error.to_string()),
+        }
     }
 
     fn hover(&self, params: Value) -> serde_json::Result<Value> {
@@ -248,7 +246,7 @@ fn diagnostic(finding: &Finding, file: &SourceFile) -> Diagnostic {
 
 /// Time and energy of the movement or wait at a position, summed over its executions in a cycle.
 fn hover(analysis: &Analysis, position: Position) -> Option<Hover> {
-    let costs = analysis.costs_at(offset_of(analysis.file(), position))?;
+    let costs = analysis.costs_at(offset_of(&analysis.file, position))?;
     let times = match costs.times {
         1 => String::new(),
         times => format!(", {times} times a cycle together"),
@@ -257,14 +255,14 @@ fn hover(analysis: &Analysis, position: Position) -> Option<Hover> {
     let value = format!("**{}**: {joules}{:.3} s{times}", costs.what, costs.time_s);
     Some(Hover {
         contents: Contents::MarkupContent(MarkupContent { kind: MarkupKind::Markdown, value }),
-        range: Some(range_of(analysis.file(), costs.span)),
+        range: Some(range_of(&analysis.file, costs.span)),
     })
 }
 
 /// The fixes of the findings that touch a range. Fixes that change other files are only available
 /// on the command line.
 fn code_actions(analysis: &Analysis, uri: &Uri, range: Range) -> Vec<CodeAction> {
-    let file = analysis.file();
+    let file = &analysis.file;
     let (start, end) = (offset_of(file, range.start), offset_of(file, range.end));
     let touched = analysis.own().filter(|it| it.span.start <= end && start <= it.span.end);
     let action = |finding: &Finding| {

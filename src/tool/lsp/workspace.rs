@@ -33,7 +33,7 @@ struct Folder {
 
 /// The findings in a document.
 pub(super) struct Analysis {
-    file: SourceFile,
+    pub(super) file: SourceFile,
     examined: Rc<Examined>,
     dynamics: bool,
 }
@@ -131,10 +131,6 @@ impl<R: Fn(&Path) -> Programs> Workspace<R> {
 }
 
 impl Analysis {
-    pub(super) fn file(&self) -> &SourceFile {
-        &self.file
-    }
-
     /// The findings in the document itself.
     pub(super) fn own(&self) -> impl Iterator<Item = &Finding> {
         self.examined.report.findings.iter().filter(|finding| finding.span.file == self.file.id)

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::rapid::text::{Edit, FileId, SourceFile, apply};
+use crate::rapid::text::{Edit, FileId, SourceFile, Span, apply};
 
 /// A file of the program.
 #[derive(Clone, Debug)]
@@ -48,6 +48,12 @@ impl OutputFile {
         let path = source.relative.clone();
         OutputFile { path, kind: OutputKind::Changed, bytes, input: Some(index) }
     }
+}
+
+/// File and line of the start of a span, as in messages.
+pub(in crate::tool) fn file_and_line(files: &[Source], span: Span) -> String {
+    let file = &files[span.file.0 as usize].file;
+    format!("{}:{}", file.path, file.position(span.start).line)
 }
 
 /// All files of the program, unchanged.

@@ -55,6 +55,7 @@ pub use brakes::BRAKE_NOTE;
 pub use elsewhere::written_in;
 pub use error::RetrofitError;
 pub use figures::{Figures, LowerLimits, Retrofit, Segment, SegmentKind, Verification};
+pub(in crate::tool) use files::file_and_line;
 pub use files::{OutputFile, OutputKind, Source, read_again};
 pub use freed::freed;
 pub use padding::Padding;
