@@ -172,7 +172,7 @@ fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {
             serde_json::from_str(&read(&path)?)
                 .with_context(|| format!("'{shown}' is no JSON; write it again with diagnose"))?
         } else {
-            diagnosed(&args.cases.join(&label.case), &name, &without)?
+            diagnosis_of_case(&args.cases.join(&label.case), &name, &without)?
         });
         graded.push(label.clone());
     }
@@ -195,11 +195,11 @@ fn without<'a>(label: &'a Label, left_out: Option<&'a str>) -> Vec<&'a str> {
 }
 
 /// The JSON of `diagnose` for a case without some effects; stored as `name` in the case folder.
-fn diagnosed(case: &Path, name: &str, without: &[&str]) -> anyhow::Result<Value> {
+fn diagnosis_of_case(case: &Path, name: &str, without: &[&str]) -> anyhow::Result<Value> {
     let options: Value = serde_json::from_str(&read(&case.join("case.json"))?)
         .with_context(|| format!("'{}' has no case.json", case.display()))?;
-    let value =
-        diagnose::of_case(case, &options, without).with_context(|| case.display().to_string())?;
+    let value = diagnose::diagnose_case(case, &options, without)
+        .with_context(|| case.display().to_string())?;
     // A cache for the next grading.
     let text = format!("{value:#}\n");
     output::write(&case.join(name), text.as_bytes())?;

@@ -7,7 +7,7 @@ use anyhow::{Context, bail};
 use clap::Args;
 
 use super::common::{self, ProgramArgs};
-use super::logs::{self, Read};
+use super::logs::{self, RawLog};
 use super::{output, signals};
 use crate::arm::robot::{Model, to_toml};
 use crate::learn::calibrate::calibrate;
@@ -54,15 +54,15 @@ pub(super) fn run(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
     let (program, entry) = read_program(&job.files, &job.entry)?;
     signals::check(&args.program.cell, &job.options.levels, &program)?;
     let quiet = args.program.cell.quiet;
-    let Read { shown, log, .. } = logs::read(&args.log, &ColumnMap::parse(&args.map)?)?;
-    for rejected in log.rejected.iter().take(SHOWN) {
+    let RawLog { shown, log, .. } = logs::read(&args.log, &ColumnMap::parse(&args.map)?)?;
+    for rejected in log.rejected.iter().take(MAX_LISTED_ROWS) {
         common::note(
             quiet,
             &format!("{shown}: row {} is left out: {}", rejected.row, rejected.reason),
         );
     }
-    if log.rejected.len() > SHOWN {
-        let more = log.rejected.len() - SHOWN;
+    if log.rejected.len() > MAX_LISTED_ROWS {
+        let more = log.rejected.len() - MAX_LISTED_ROWS;
         common::note(quiet, &format!("{shown}: {more} more rows are left out"));
     }
     if log.column(Channel::Power).is_none() {
@@ -92,7 +92,7 @@ pub(super) fn run(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
 }
 
 /// Maximum number of rejected rows that are listed individually.
-const SHOWN: usize = 3;
+const MAX_LISTED_ROWS: usize = 3;
 
 /// Torques of all joints, logged or from currents, and why currents are not usable.
 fn torques(model: &Model, log: &Log) -> (Option<Vec<Vec<f64>>>, Option<String>) {

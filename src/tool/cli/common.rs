@@ -24,7 +24,7 @@ use crate::tool::config::{self, Config};
 use crate::tool::retrofit::Source;
 
 /// Upper limit of any number in an option: m, mm or degrees.
-const BEYOND: f64 = 1e6;
+const MAX_NUMBER: f64 = 1e6;
 
 /// Message for robots with another number of joints.
 pub(super) const RUN_SIX_JOINTS: &str =
@@ -175,7 +175,7 @@ pub(super) fn prepare_read(program: &ProgramArgs, input: Input) -> anyhow::Resul
     let (config, folder) = configuration(args)?;
     let of_task = choice.task.and_then(|task| task.robot.as_deref());
     let name = robot_name(args, &config, &folder).or_else(|| of_task.map(str::to_owned));
-    let name = name.with_context(which_robot)?;
+    let name = name.with_context(robot_needed)?;
     let of_backup = args.robot.is_none() && config.robot.is_none();
     let model = effects::load_estimated(&name).map_err(|error| {
         if of_backup {
@@ -185,7 +185,7 @@ pub(super) fn prepare_read(program: &ProgramArgs, input: Input) -> anyhow::Resul
         }
     })?;
     let model = match choice.backup.filter(|_| of_backup) {
-        Some(backup) => as_configured(backup, model, args.quiet),
+        Some(backup) => with_backup_configuration(backup, model, args.quiet),
         None => model,
     };
     if of_backup {
@@ -196,7 +196,7 @@ pub(super) fn prepare_read(program: &ProgramArgs, input: Input) -> anyhow::Resul
     let entry = args.entry.clone().or_else(|| config.entry.clone()).or(of_task);
     let entry = entry.unwrap_or_else(|| "main".into());
     let (options, inputs) = simulation_options(args, &config, Some(&model))?;
-    let options = in_force(program, options)?;
+    let options = with_overrides(program, options)?;
     let files: Vec<Source> = choice
         .files
         .iter()
@@ -248,7 +248,7 @@ pub(super) fn simulation_options(
 }
 
 /// Adds speed override, passes and maximum time to the options.
-fn in_force(args: &ProgramArgs, options: Options) -> anyhow::Result<Options> {
+fn with_overrides(args: &ProgramArgs, options: Options) -> anyhow::Result<Options> {
     if let Some(percent) = args.speed_override.filter(|x| !(*x > 0.0 && *x <= 100.0)) {
         bail!("--speed-override {percent}: give a percentage above 0 and up to 100");
     }
@@ -264,7 +264,7 @@ fn in_force(args: &ProgramArgs, options: Options) -> anyhow::Result<Options> {
 }
 
 /// The robot with the configuration of its backup: ranges, base frame, arm loads.
-pub(super) fn as_configured(backup: &Path, model: Model, quiet: bool) -> Model {
+pub(super) fn with_backup_configuration(backup: &Path, model: Model, quiet: bool) -> Model {
     let Some(path) = motion_configuration(backup) else { return model };
     let shown = path.display().to_string();
     let configured =
@@ -282,7 +282,7 @@ pub(super) fn as_configured(backup: &Path, model: Model, quiet: bool) -> Model {
 /// The robot from options and configuration, for commands without a program.
 pub(super) fn robot(args: &CellArgs) -> anyhow::Result<Model> {
     let (config, folder) = configuration(args)?;
-    Ok(effects::load_estimated(&robot_name(args, &config, &folder).with_context(which_robot)?)?)
+    Ok(effects::load_estimated(&robot_name(args, &config, &folder).with_context(robot_needed)?)?)
 }
 
 /// The robot that options or configuration name.
@@ -295,7 +295,7 @@ pub(super) fn robot_name(args: &CellArgs, config: &Config, folder: &Path) -> Opt
     args.robot.clone().or_else(configured)
 }
 
-fn which_robot() -> String {
+fn robot_needed() -> String {
     format!(
         "which robot? name it with --robot NAME (joulepath robots list shows the known ones), \
          --robot FILE.toml, or robot = \"…\" in {}",
@@ -369,7 +369,7 @@ pub(super) fn numbers<const N: usize>(
 ) -> anyhow::Result<[f64; N]> {
     let wrong = || format!("{option} {text}: give {help}");
     let values: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
-    let values = values.ok().filter(|x| x.iter().all(|x: &f64| x.abs() < BEYOND));
+    let values = values.ok().filter(|x| x.iter().all(|x: &f64| x.abs() < MAX_NUMBER));
     values.and_then(|x| <[f64; N]>::try_from(x).ok()).with_context(wrong)
 }
 

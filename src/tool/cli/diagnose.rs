@@ -13,7 +13,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
 
 use super::common::{self, Format};
-use super::logs::{Read, Reader, Ready, held_out, read_all};
+use super::logs::{PreparedLog, RawLog, Reader, held_out, read_all};
 use super::output::{self, is_same_file};
 use crate::arm::effects::{self, ALL, Effect};
 use crate::arm::robot::{Model, Use, nearest, ready, to_toml};
@@ -89,7 +89,7 @@ pub(super) struct DiagnoseArgs {
 }
 
 /// Cut-off frequency of the filter for logged program runs \[Hz\].
-const OF_RUNS: f64 = 10.0;
+const RUN_CUTOFF_HZ: f64 = 10.0;
 /// Redraw interval of the progress bar.
 const TICK: Duration = Duration::from_millis(200);
 
@@ -105,14 +105,18 @@ enum TrustArg {
 }
 
 pub(super) fn run(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
-    let (found, basis) = diagnosed(args)?;
+    let (found, basis) = run_diagnosis(args)?;
     common::print(args.format, || report::json(&found, &basis), || report::text(&found, &basis))?;
     Ok(if found.verdict == Verdict::NoGap { ExitCode::SUCCESS } else { ExitCode::from(1) })
 }
 
 /// The JSON of a case of `blind generate`, diagnosed without some effects; without omissions, the
 /// model is written too.
-pub(super) fn of_case(case: &Path, options: &Value, without: &[&str]) -> anyhow::Result<Value> {
+pub(super) fn diagnose_case(
+    case: &Path,
+    options: &Value,
+    without: &[&str],
+) -> anyhow::Result<Value> {
     let text = |key: &str| options.get(key).and_then(Value::as_str);
     let baseline = case.join("baseline-1.csv");
     let args = DiagnoseArgs {
@@ -130,7 +134,7 @@ pub(super) fn of_case(case: &Path, options: &Value, without: &[&str]) -> anyhow:
         format: Format::Json,
         quiet: true,
     };
-    let (found, basis) = diagnosed(&args)?;
+    let (found, basis) = run_diagnosis(&args)?;
     Ok(report::json(&found, &basis))
 }
 
@@ -168,7 +172,7 @@ fn check_paths(args: &DiagnoseArgs) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> {
+fn run_diagnosis(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> {
     check_paths(args)?;
     let model = effects::load(&args.robot)?;
     ready(&model, Use::Predict)?;
@@ -216,7 +220,8 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
         (wanted.clone(), baseline.as_slice())
     };
     let settings = Settings { trust, effects: of_torque };
-    let mut found = of_logs(&model, [&train, &held, compared], &settings, &progress(args.quiet));
+    let mut found =
+        diagnose_with_progress(&model, [&train, &held, compared], &settings, &progress(args.quiet));
     basis.notes.extend(baseline_notes(&found, compared));
     if let Some(of) = &of_power {
         found.add_power(of);
@@ -241,9 +246,9 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
 }
 
 struct Data {
-    train: Vec<Ready>,
-    held: Vec<Ready>,
-    baseline: Vec<Ready>,
+    train: Vec<PreparedLog>,
+    held: Vec<PreparedLog>,
+    baseline: Vec<PreparedLog>,
     /// The kind of held-out data: `file`, `trajectory` or `cycles`.
     heldout: &'static str,
     notes: Vec<String>,
@@ -256,12 +261,12 @@ fn read_data(
     trust: Trust,
 ) -> anyhow::Result<Data> {
     let mut reader = Reader { model, quiet: args.quiet, notes: Vec::new() };
-    let mut read = |paths: &[PathBuf]| -> anyhow::Result<Vec<Ready>> {
-        let one = |read: Read| {
+    let mut read = |paths: &[PathBuf]| -> anyhow::Result<Vec<PreparedLog>> {
+        let one = |read: RawLog| {
             // Repetitions of a program are never equal to the millisecond.
             let is_run = read.log.column(Channel::Command).is_some();
-            let cutoff = is_run.then_some(OF_RUNS);
-            reader.ready(read, Hints { period: args.period, cutoff })
+            let cutoff = is_run.then_some(RUN_CUTOFF_HZ);
+            reader.prepared(read, Hints { period: args.period, cutoff })
         };
         read_all(paths, map, model)?.into_iter().map(one).collect()
     };
@@ -297,12 +302,12 @@ fn read_data(
     Ok(Data { train, held, baseline, heldout, notes: reader.notes })
 }
 
-fn records<'a>(model: &'a Model, logs: &[Ready]) -> Vec<Record<'a>> {
+fn records<'a>(model: &'a Model, logs: &[PreparedLog]) -> Vec<Record<'a>> {
     logs.iter().flat_map(|log| Record::all(model, &log.samples)).collect()
 }
 
 /// Effects that the baseline already shows, or why it is not compared.
-fn baseline_notes(found: &Diagnosis, compared: &[Ready]) -> Vec<String> {
+fn baseline_notes(found: &Diagnosis, compared: &[PreparedLog]) -> Vec<String> {
     let known = found.before.iter().flatten();
     let mut notes: Vec<String> =
         known.map(|of| format!("{}: in the baseline already", report::called(of))).collect();
@@ -318,7 +323,7 @@ fn baseline_notes(found: &Diagnosis, compared: &[Ready]) -> Vec<String> {
 fn write(
     args: &DiagnoseArgs,
     model: &Model,
-    graded: &[Ready],
+    graded: &[PreparedLog],
     found: &Diagnosis,
     basis: &mut report::Basis,
 ) -> anyhow::Result<()> {
@@ -335,9 +340,9 @@ fn write(
     Ok(())
 }
 
-fn of_logs(
+fn diagnose_with_progress(
     model: &Model,
-    [train, held, before]: [&[Ready]; 3],
+    [train, held, before]: [&[PreparedLog]; 3],
     settings: &Settings,
     progress: &ProgressBar,
 ) -> Diagnosis {

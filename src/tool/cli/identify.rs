@@ -8,7 +8,7 @@ use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
 
 use super::common::{self, note_once};
-use super::logs::{Reader, Ready, read_all};
+use super::logs::{PreparedLog, Reader, read_all};
 use super::output;
 use crate::arm::effects;
 use crate::arm::robot::Model;
@@ -197,7 +197,7 @@ fn read_data(
     let mut reader = Reader { model, quiet: args.quiet, notes: Vec::new() };
     let mut training = Vec::new();
     for read in read_all(&args.log, map, model)? {
-        training.push(reader.ready(read, hints)?);
+        training.push(reader.prepared(read, hints)?);
     }
     // One filter for all logs: compared data need the same bandwidth.
     let cutoff = training.iter().find_map(|ready| match ready.samples.source {
@@ -206,7 +206,7 @@ fn read_data(
     });
     let mut validation = Vec::new();
     for read in read_all(&args.validate, map, model)? {
-        let ready = reader.ready(read, Hints { cutoff, ..hints })?;
+        let ready = reader.prepared(read, Hints { cutoff, ..hints })?;
         basis.validation.push(ready.record);
         validation.push(ready.samples);
     }
@@ -281,12 +281,12 @@ fn traces(found: &Identified, model: &Model, samples: &Samples, title: String) -
 }
 
 /// Maximum relative residual of a good model.
-const MISSED: f64 = 0.35;
+const MAX_RELATIVE_RESIDUAL: f64 = 0.35;
 /// Relative residual that counts as zero.
-const NOTHING: f64 = 1e-3;
+const NEGLIGIBLE_RESIDUAL: f64 = 1e-3;
 
 /// Maximum plausible mass of a link \[kg\].
-const HEAVIEST: f64 = 1500.0;
+const MAX_LINK_MASS: f64 = 1500.0;
 
 /// Warnings on the quality of the result.
 fn doubts(found: &Identified) -> Vec<String> {
@@ -297,7 +297,7 @@ fn doubts(found: &Identified) -> Vec<String> {
     };
     for (joint, (with, without)) in with.iter().zip(without).enumerate() {
         let relative = found.training.relative[joint];
-        if relative > MISSED {
+        if relative > MAX_RELATIVE_RESIDUAL {
             texts.push(format!(
                 "joint {}: the model misses {:.0} % of the torque: are the columns of one time and \
                  one robot?",
@@ -305,7 +305,7 @@ fn doubts(found: &Identified) -> Vec<String> {
                 100.0 * relative
             ));
         }
-        if with / without > 1.02 && relative > NOTHING {
+        if with / without > 1.02 && relative > NEGLIGIBLE_RESIDUAL {
             texts.push(format!(
                 "joint {}: residuals of the physically consistent model are {:.1} % larger than \
                  those of the free fit",
@@ -321,7 +321,7 @@ fn doubts(found: &Identified) -> Vec<String> {
         ));
     }
     for (k, link) in found.model.links.iter().enumerate() {
-        if link.mass > HEAVIEST {
+        if link.mass > MAX_LINK_MASS {
             texts.push(format!(
                 "link {}: {:.0} kg are no arm's: the motion does not tell masses, only what torques \
                  need of them; start from a robot file with the masses of the drawings",
@@ -367,7 +367,7 @@ fn repeated(training: &[LogRecord], validation: &[LogRecord]) -> Vec<String> {
 const PERIODS: RangeInclusive<f64> = 1e-3..=1e5;
 
 /// Concatenates the samples of several logs.
-fn joined(logs: Vec<Ready>) -> anyhow::Result<Samples> {
+fn joined(logs: Vec<PreparedLog>) -> anyhow::Result<Samples> {
     let mut all = logs.into_iter();
     let Some(first) = all.next() else { bail!("--log: give a log") };
     let mut samples = first.samples;

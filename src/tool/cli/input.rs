@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use self::search::{Found, below, bytes_of, find, shown, tell_apart};
+use self::search::{FoundFile, bytes_of, find, make_distinct, relative_text, shown};
 use super::backup::{self, Backup};
 use crate::rapid::text::{FileId, SourceFile};
 
@@ -87,13 +87,13 @@ pub(super) struct Input {
 pub(super) fn read(paths: &[PathBuf]) -> Result<Input, InputError> {
     let mut first_error = None;
     let mut input = Input::default();
-    let mut found: Vec<Found> = Vec::new();
+    let mut found: Vec<FoundFile> = Vec::new();
     let mut seen = BTreeSet::new();
     for path in paths {
         match find(path, &mut input.unreadable) {
             Ok(files) => {
                 let place =
-                    |file: &Found| fs::canonicalize(&file.path).unwrap_or(file.path.clone());
+                    |file: &FoundFile| fs::canonicalize(&file.path).unwrap_or(file.path.clone());
                 found.extend(files.into_iter().filter(|file| seen.insert(place(file))));
             }
             Err(error @ InputError::Outside { .. }) => return Err(error),
@@ -103,8 +103,8 @@ pub(super) fn read(paths: &[PathBuf]) -> Result<Input, InputError> {
             }
         }
     }
-    tell_apart(&mut found);
-    let (listings, found): (Vec<Found>, Vec<Found>) =
+    make_distinct(&mut found);
+    let (listings, found): (Vec<FoundFile>, Vec<FoundFile>) =
         found.into_iter().partition(|file| file.modules.is_some());
     for file in listings {
         if let (Some(modules), Ok(bytes)) = (file.modules, bytes_of(&file.path)) {
@@ -122,7 +122,7 @@ pub(super) fn read(paths: &[PathBuf]) -> Result<Input, InputError> {
                 let id = FileId(input.files.len() as u32);
                 let place = place(&file.path, &mut input);
                 let source = SourceFile { id, ..source };
-                let Found { relative, named, .. } = file;
+                let FoundFile { relative, named, .. } = file;
                 input.files.push(InputFile { source, relative, place, named });
             }
             Err(reason) => {
@@ -155,7 +155,7 @@ fn place(path: &Path, input: &mut Input) -> Option<Place> {
 fn information(root: &Path) -> Option<Information> {
     let path = backup::information(root)?;
     let bytes = bytes_of(&path).ok()?;
-    let relative = below(path.strip_prefix(root).ok()?);
+    let relative = relative_text(path.strip_prefix(root).ok()?);
     Some(Information { path: shown(&path), relative, bytes })
 }
 

@@ -222,7 +222,7 @@ fn robot(
             let name = backup.tasks.iter().find_map(|task| task.robot.clone())?;
             Some((root, effects::load_estimated(&name).ok()?))
         });
-        named.map(|(root, model)| common::as_configured(root, model, args.quiet))
+        named.map(|(root, model)| common::with_backup_configuration(root, model, args.quiet))
     };
     let Some(model) = model else { return Ok(None) };
     common::require_six_joints(&model, common::RUN_SIX_JOINTS)?;

@@ -21,6 +21,7 @@ mod optimize;
 mod output;
 mod parse;
 mod predict;
+mod program_output;
 mod refresh;
 mod robots;
 mod rule;
@@ -30,7 +31,6 @@ mod standstill;
 mod streams;
 mod streamtest;
 mod undo;
-mod written;
 
 use std::io::{ErrorKind, Write as _};
 use std::process::ExitCode;

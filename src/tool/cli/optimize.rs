@@ -11,7 +11,9 @@ use nalgebra::{Point3, Vector3};
 use similar::TextDiff;
 
 use super::common::{self, Format, Job, ProgramArgs};
-use super::written::{now, outside, whole_backup, write_folder, write_in_place};
+use super::program_output::{
+    current_bytes, refuse_nested_output, whole_backup, write_folder, write_in_place,
+};
 use super::{backinfo, input, listing, output, streams, undo};
 use crate::arm::kinematics::{self, Obstacle, Plane};
 use crate::rapid::text::charset;
@@ -199,9 +201,9 @@ const LARGEST_DWELL_POSE_DEG: f64 = 90.0;
 
 pub(super) fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
     if args.undo {
-        return take_back(args);
+        return undo_in_place(args);
     }
-    work(args, &common::prepare(&args.program)?)
+    optimize_job(args, &common::prepare(&args.program)?)
 }
 
 /// Optimises a program that already has streams and replaces these.
@@ -210,19 +212,19 @@ pub(super) fn refresh(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
         bail!("refresh takes nothing back: joulepath optimize --undo does");
     }
     let mut input = input::read(&args.program.cell.paths)?;
-    let streams = streams::take_out(&mut input)?;
+    let streams = streams::remove_streams(&mut input)?;
     let job = common::prepare_read(&args.program, input)?;
-    work(args, &Job { streams, ..job })
+    optimize_job(args, &Job { streams, ..job })
 }
 
-fn work(args: &OptimizeArgs, job: &Job) -> anyhow::Result<ExitCode> {
+fn optimize_job(args: &OptimizeArgs, job: &Job) -> anyhow::Result<ExitCode> {
     let settings = settings(args, job)?;
     let quiet = args.program.cell.quiet;
     // The folder of a single task does not include the controller's module list.
     let paths = args.program.cell.paths.as_slice();
     let backup = whole_backup(paths, job);
     if let (Some(folder), None) = (&args.out, backup) {
-        outside(folder, paths)?;
+        refuse_nested_output(folder, paths)?;
     }
     let lists = backup.is_some() || (args.in_place && args.out.is_none());
     let result = {
@@ -241,7 +243,7 @@ fn work(args: &OptimizeArgs, job: &Job) -> anyhow::Result<ExitCode> {
                     .to_owned(),
             );
         }
-        job.streams.restate(&mut result);
+        job.streams.restore_stated_data(&mut result);
         listing::add(&mut result, &job.input, &job.files);
         if lists {
             backinfo::add(&mut result, &job.input);
@@ -414,7 +416,7 @@ fn progress(quiet: bool) -> ProgressBar {
 }
 
 /// Undoes the changes of an earlier run in place.
-fn take_back(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
+fn undo_in_place(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
     let cell = &args.program.cell;
     let mut done = Vec::new();
     for path in &cell.paths {
@@ -429,7 +431,7 @@ fn take_back(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
 fn diff(job: &Job, result: &Retrofit) -> String {
     let mut text = String::new();
     for file in &result.outputs {
-        let before = now(job, file).unwrap_or_default();
+        let before = current_bytes(job, file).unwrap_or_default();
         if before == file.bytes {
             continue;
         }

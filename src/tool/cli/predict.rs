@@ -22,10 +22,10 @@ use crate::rapid::text::{FileId, SourceFile};
 use crate::retime::energy::power::{power_at, supply_w};
 
 /// Byte order marks of spreadsheet exports.
-const UTF_16: [&[u8]; 2] = [b"\xFF\xFE", b"\xFE\xFF"];
+const UTF16_MARKS: [&[u8]; 2] = [b"\xFF\xFE", b"\xFE\xFF"];
 
 /// The reason for a row without prediction.
-const BEYOND: &str = "its motion is so large that torque or power is not finite";
+const NOT_FINITE: &str = "its motion is so large that torque or power is not finite";
 
 /// Torques and powers that a model predicts for a logged motion, as CSV.
 #[derive(Debug, Args)]
@@ -68,7 +68,7 @@ pub(super) fn run(args: &PredictArgs) -> anyhow::Result<ExitCode> {
     let shown = args.log.display().to_string();
     let bytes = fs::read(&args.log)
         .with_context(|| format!("cannot read '{shown}'; check the path and its permissions"))?;
-    let bytes = if UTF_16.iter().any(|mark| bytes.starts_with(mark)) {
+    let bytes = if UTF16_MARKS.iter().any(|mark| bytes.starts_with(mark)) {
         SourceFile::new(FileId(0), shown.clone(), bytes).bytes
     } else {
         bytes
@@ -104,9 +104,9 @@ pub(super) fn run(args: &PredictArgs) -> anyhow::Result<ExitCode> {
     common::notes(args.quiet, doubts.iter().map(|doubt| format!("{shown}: {doubt}")));
     let (csv, beyond) = prediction(&model, &load, &motion);
     if beyond.len() == motion.time.len() {
-        bail!("{shown}: {BEYOND} in every row; give positions in rad, rates in rad/s");
+        bail!("{shown}: {NOT_FINITE} in every row; give positions in rad, rates in rad/s");
     }
-    let left_out = |row: u64| format!("{shown}: row {row} left out: {BEYOND}");
+    let left_out = |row: u64| format!("{shown}: row {row} left out: {NOT_FINITE}");
     common::notes(args.quiet, beyond.into_iter().map(left_out));
     match &args.out {
         Some(path) => output::write(path, csv.as_bytes())?,

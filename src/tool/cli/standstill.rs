@@ -50,8 +50,11 @@ pub(super) fn run(args: &StandstillArgs) -> anyhow::Result<ExitCode> {
         bail!("nothing to look at: give poses with --pose DEG,…, or the PATH of a program");
     }
     let distance = args.within.to_radians();
-    let (model, poses, assumed) =
-        if args.pose.is_empty() { of_program(args, distance)? } else { of_poses(args, distance)? };
+    let (model, poses, assumed) = if args.pose.is_empty() {
+        dwells_of_program(args, distance)?
+    } else {
+        given_poses(args, distance)?
+    };
     if model.brakes.is_none() {
         let text = format!("{} has no [brakes]: nothing is said of when they pay", model.name);
         common::note(args.program.cell.quiet, &text);
@@ -66,7 +69,7 @@ pub(super) fn run(args: &StandstillArgs) -> anyhow::Result<ExitCode> {
     )
 }
 
-fn of_poses(
+fn given_poses(
     args: &StandstillArgs,
     distance: f64,
 ) -> anyhow::Result<(Model, Vec<Pose>, Vec<String>)> {
@@ -87,7 +90,7 @@ fn of_poses(
     Ok((model, poses, assumed))
 }
 
-fn of_program(
+fn dwells_of_program(
     args: &StandstillArgs,
     distance: f64,
 ) -> anyhow::Result<(Model, Vec<Pose>, Vec<String>)> {

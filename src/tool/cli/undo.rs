@@ -73,8 +73,8 @@ pub(super) fn plan<'a>(
     changes: &'a [Change<'_>],
     streams: &[PathBuf],
 ) -> anyhow::Result<Plan<'a>> {
-    let root = real(root)?;
-    let folder = beside(&root)?;
+    let root = canonical(root)?;
+    let folder = undo_folder(&root)?;
     if folder.exists() && streams.is_empty() {
         bail!(
             "'{}' holds the originals of an earlier --in-place: take that back first (joulepath \
@@ -87,7 +87,7 @@ pub(super) fn plan<'a>(
     let mut folders = Vec::new();
     let mut kept: Vec<(PathBuf, Cow<'_, [u8]>)> = Vec::new();
     for change in changes {
-        let path = below(&root, &change.path)?;
+        let path = relative_path(&root, &change.path)?;
         let kind = if let Some(before) = &change.before {
             kept.push((Path::new(ORIGINALS).join(&path), before.into()));
             Kind::Changed
@@ -98,10 +98,14 @@ pub(super) fn plan<'a>(
                     change.path.display()
                 );
             }
-            made(&root, &path, &mut folders);
+            add_missing_folders(&root, &path, &mut folders);
             Kind::Added
         };
-        files.push(Entry { path: shown(&path), change: kind, sha256: checksum(&change.after) });
+        files.push(Entry {
+            path: with_slashes(&path),
+            change: kind,
+            sha256: checksum(&change.after),
+        });
     }
     let manifest = serde_json::to_vec_pretty(&Manifest { version: VERSION, files, folders })?;
     kept.push((MANIFEST.into(), manifest.into()));
@@ -125,9 +129,9 @@ impl Plan<'_> {
 /// # Errors
 /// There is nothing to undo, or a file was edited since.
 pub(super) fn undo(path: &Path) -> anyhow::Result<Vec<String>> {
-    let absolute = real(path)?;
+    let absolute = canonical(path)?;
     let found = absolute.ancestors().find_map(|root| {
-        let folder = beside(root).ok()?;
+        let folder = undo_folder(root).ok()?;
         folder.join(MANIFEST).is_file().then(|| (root.to_owned(), folder))
     });
     let Some((root, folder)) = found else {
@@ -214,7 +218,7 @@ fn read(folder: &Path) -> anyhow::Result<Manifest> {
 }
 
 /// The undo folder of a program's folder.
-fn beside(root: &Path) -> anyhow::Result<PathBuf> {
+fn undo_folder(root: &Path) -> anyhow::Result<PathBuf> {
     let name = root.file_name().with_context(|| {
         format!("'{}' has no folder beside it: move the program into a folder", root.display())
     })?;
@@ -224,13 +228,13 @@ fn beside(root: &Path) -> anyhow::Result<PathBuf> {
 }
 
 /// The path of a file relative to the program's folder. The file may be a link.
-fn below(root: &Path, path: &Path) -> anyhow::Result<PathBuf> {
+fn relative_path(root: &Path, path: &Path) -> anyhow::Result<PathBuf> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     let folder = folder.unwrap_or(Path::new("."));
     // A missing folder is created under this name.
     let known = folder.ancestors().find(|folder| folder.exists()).unwrap_or(Path::new("."));
     let rest = folder.strip_prefix(known).unwrap_or(Path::new(""));
-    let absolute = real(known)?.join(rest).join(path.file_name().unwrap_or_default());
+    let absolute = canonical(known)?.join(rest).join(path.file_name().unwrap_or_default());
     let relative = absolute.strip_prefix(root).with_context(|| {
         format!(
             "'{}' does not lie below '{}': name the folder that holds the whole program",
@@ -242,21 +246,21 @@ fn below(root: &Path, path: &Path) -> anyhow::Result<PathBuf> {
 }
 
 /// Adds the missing folders that a new file needs.
-fn made(root: &Path, path: &Path, folders: &mut Vec<String>) {
+fn add_missing_folders(root: &Path, path: &Path, folders: &mut Vec<String>) {
     let needed: Vec<&Path> = path.ancestors().skip(1).collect();
     for folder in needed.into_iter().rev() {
-        let name = shown(folder);
+        let name = with_slashes(folder);
         if !name.is_empty() && !root.join(folder).exists() && !folders.contains(&name) {
             folders.push(name);
         }
     }
 }
 
-fn real(path: &Path) -> anyhow::Result<PathBuf> {
+fn canonical(path: &Path) -> anyhow::Result<PathBuf> {
     path.canonicalize().with_context(|| format!("cannot find '{}'; check the path", path.display()))
 }
 
-fn shown(path: &Path) -> String {
+fn with_slashes(path: &Path) -> String {
     let parts: Vec<_> = path.components().map(|part| part.as_os_str().to_string_lossy()).collect();
     parts.join("/")
 }

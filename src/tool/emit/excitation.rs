@@ -17,7 +17,7 @@ const RATIO_DECIMALS: usize = 5;
 /// Interval of the logger \[s\]: the shortest of test signals.
 pub(super) const INTERVAL: f64 = 0.004;
 /// Maximum number of logger rows: limited by the size of a RAPID array in a task's memory.
-const MOST_ROWS: usize = 30_000;
+const MAX_ROWS: usize = 30_000;
 
 /// Points of one part of the motion, in their order.
 #[derive(Clone, Debug)]
@@ -102,7 +102,7 @@ pub fn excitation(of: &Excitation) -> Result<[(String, String); 2], tera::Error>
         .sum();
     let duration = of.spacing * count as f64 + 3.0;
     // A long motion is logged at a longer interval instead of being cut off.
-    let every = (duration / MOST_ROWS as f64 / INTERVAL).ceil().max(1.0);
+    let every = (duration / MAX_ROWS as f64 / INTERVAL).ceil().max(1.0);
     let interval = INTERVAL * every;
     let rows = (duration / interval).ceil() as usize;
     let (motion, logger) = ("JoulepathExcitation", "JoulepathLogger");

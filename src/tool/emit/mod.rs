@@ -21,7 +21,7 @@ pub use generated::{
 };
 pub use guard::{EDIT_REMARK, end_of_line};
 pub use layout::Layout;
-pub use names::{Names, has_streams, missing_streams, own_name};
+pub use names::{Names, has_streams, missing_streams, redeclared_name};
 pub use site::{
     EmitError, Emitted, EmittedStream, MotionSettings, Parameter, Pause, Recorded, Robot, Site,
 };

@@ -98,7 +98,7 @@ pub(super) fn measure(model: &Model, stream: &Stream, reference: &Reference) -> 
             let tau = piece.length * i as f64 / steps as f64;
             let (q, qd, qdd) = piece.at(tau);
             measure.add(model, &mut data, &JointState { q, qd, qdd });
-            measure.stray(model, &q, &reference.at(start + tau).0);
+            measure.add_deviation(model, &q, &reference.at(start + tau).0);
         }
         start += piece.length;
     }
@@ -124,7 +124,7 @@ pub(super) fn sampled(model: &Model, t: &[f64], q: &[Joints]) -> Result<Sampled,
 
 /// The exceeded limit, and how much longer the trajectory has to take.
 fn too_fast(measure: &Measure) -> Option<GenerateError> {
-    let what = measure.fault()?;
+    let what = measure.exceeded_limit()?;
     // Torque is about proportional to acceleration, so time scales with its square root.
     let worst = measure.velocity.max(measure.acceleration.max(measure.torque).sqrt());
     Some(GenerateError::TooFast { what, factor: worst.max(measure.tcp_speed).max(1.0) + 0.005 })
@@ -140,7 +140,7 @@ fn reference(model: &Model, t: &[f64], q: &[Joints]) -> Result<Reference, Genera
         let speed = |j: usize| (q[to][j] - q[from][j]).abs() / (t[to] - t[from]);
         let fastest = (0..DOF).max_by(|a, b| speed(*a).total_cmp(&speed(*b))).unwrap_or(0);
         // The mean speed of a first step from rest is half of its final speed.
-        if q.len() > 2 && speed(fastest) > REST && !eases(t, q, fastest, end == "starts") {
+        if q.len() > 2 && speed(fastest) > REST && !ramps_up(t, q, fastest, end == "starts") {
             let (joint, speed) = (fastest + 1, speed(fastest));
             return Err(GenerateError::Moving { end, joint, speed });
         }
@@ -162,7 +162,7 @@ fn reference(model: &Model, t: &[f64], q: &[Joints]) -> Result<Reference, Genera
 
 /// Whether a joint ramps up from this end of the trajectory: the second step is clearly faster than
 /// the first.
-fn eases(t: &[f64], q: &[Joints], j: usize, at_start: bool) -> bool {
+fn ramps_up(t: &[f64], q: &[Joints], j: usize, at_start: bool) -> bool {
     let speed = |i: usize| (q[i + 1][j] - q[i][j]).abs() / (t[i + 1] - t[i]);
     let (first, second) = if at_start { (0, 1) } else { (q.len() - 2, q.len() - 3) };
     speed(first) < 0.75 * speed(second)

@@ -44,14 +44,14 @@ impl Measure {
     }
 
     /// Adds the distance between a position and the intended one.
-    pub(super) fn stray(&mut self, model: &Model, q: &Joints, intended: &Joints) {
+    pub(super) fn add_deviation(&mut self, model: &Model, q: &Joints, intended: &Joints) {
         let distance =
             (fk(model, q).translation.vector - fk(model, intended).translation.vector).norm();
         self.deviation_m = self.deviation_m.max(distance);
     }
 
     /// The exceeded limit in words.
-    pub(super) fn fault(&self) -> Option<String> {
+    pub(super) fn exceeded_limit(&self) -> Option<String> {
         let figures = [
             ("joint speed", self.velocity),
             ("joint acceleration", self.acceleration),

@@ -57,7 +57,7 @@ pub fn generate(
                 .into(),
         ));
     }
-    let names = GeneratedNames::of(&settings.name);
+    let names = GeneratedNames::from_file_name(&settings.name);
     let mut notes = table.notes.clone();
     if !model.has_dynamics() || model.limits.torque.is_none() {
         notes.push(format!(

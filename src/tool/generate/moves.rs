@@ -4,7 +4,7 @@ use nalgebra::Isometry3;
 
 use super::error::GenerateError;
 use super::settings::Form;
-use super::table::{Amount, Points, Table};
+use super::table::{Points, SpeedOrZone, Table};
 use crate::arm::kinematics::{Conf, conf_of, fk, ik_conf, ik_near, limits_ok};
 use crate::arm::robot::Model;
 use crate::rapid::ir::number::number;
@@ -39,7 +39,7 @@ pub(super) struct Target {
 pub(super) fn moves(model: &Model, table: &Table, form: Form) -> Result<Moves, GenerateError> {
     let positions = match &table.points {
         Points::Trajectory(_, q) | Points::Joints(q) => q.clone(),
-        Points::Poses(poses) => solved(model, poses)?,
+        Points::Poses(poses) => joint_positions(model, poses)?,
     };
     let mut notes = Vec::new();
     let last = positions.len() - 1;
@@ -51,10 +51,11 @@ pub(super) fn moves(model: &Model, table: &Table, form: Form) -> Result<Moves, G
             Points::Poses(poses) => (poses[i].0, poses[i].1.unwrap_or_else(|| conf_of(model, &q))),
             _ => (fk(model, &q), conf_of(model, &q)),
         };
-        let speed = named(row, table.speeds[i].as_ref(), "speeddata", SPEED, |metres| {
-            format!("v1000\\V:={}", number(metres * 1e3, 3))
-        })?;
-        let zone = named(row, table.zones[i].as_ref(), "zonedata", STOP, |metres| {
+        let speed =
+            speed_or_zone_text(row, table.speeds[i].as_ref(), "speeddata", SPEED, |metres| {
+                format!("v1000\\V:={}", number(metres * 1e3, 3))
+            })?;
+        let zone = speed_or_zone_text(row, table.zones[i].as_ref(), "zonedata", STOP, |metres| {
             format!("z10\\Z:={}", number(metres * 1e3, 3))
         })?;
         let zone = if i == last && zone != STOP {
@@ -70,7 +71,7 @@ pub(super) fn moves(model: &Model, table: &Table, form: Form) -> Result<Moves, G
 }
 
 /// Joint positions of poses: in the given configuration, or else near the previous point.
-fn solved(
+fn joint_positions(
     model: &Model,
     poses: &[(Isometry3<f64>, Option<Conf>)],
 ) -> Result<Vec<Joints>, GenerateError> {
@@ -88,17 +89,17 @@ fn solved(
 }
 
 /// The RAPID text of a speed or zone.
-fn named(
+fn speed_or_zone_text(
     row: usize,
-    amount: Option<&Amount>,
+    amount: Option<&SpeedOrZone>,
     r#type: &str,
     default: &str,
     written: impl Fn(f64) -> String,
 ) -> Result<String, GenerateError> {
     match amount {
         None => Ok(default.to_owned()),
-        Some(Amount::Value(metres)) => Ok(written(*metres)),
-        Some(Amount::Name(name)) => match lookup(name) {
+        Some(SpeedOrZone::Value(metres)) => Ok(written(*metres)),
+        Some(SpeedOrZone::Name(name)) => match lookup(name) {
             Some(value) if &*value.type_key == r#type => Ok(name.clone()),
             _ => {
                 let speed = r#type == "speeddata";

@@ -21,9 +21,9 @@ pub struct Table {
     /// The points.
     pub points: Points,
     /// Programmed speed of each point, if given.
-    pub speeds: Vec<Option<Amount>>,
+    pub speeds: Vec<Option<SpeedOrZone>>,
     /// Zone of each point, if given.
-    pub zones: Vec<Option<Amount>>,
+    pub zones: Vec<Option<SpeedOrZone>>,
     /// Notes on assumed units and unused columns.
     pub notes: Vec<String>,
 }
@@ -41,7 +41,7 @@ pub enum Points {
 
 /// A speed or a zone.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Amount {
+pub enum SpeedOrZone {
     /// A RAPID name, such as v100 or fine.
     Name(String),
     /// m/s or m.
@@ -138,7 +138,7 @@ enum Layout {
 }
 
 impl Layout {
-    fn of(columns: &Columns, header: &str) -> Result<Layout, TableError> {
+    fn from_columns(columns: &Columns, header: &str) -> Result<Layout, TableError> {
         let owned =
             |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
         let joints = |suffix: &str| {
@@ -211,17 +211,17 @@ impl Row<'_> {
     }
 
     /// A speed or zone: a name, or a number in the file's unit of length.
-    fn amount(&self, column: Option<usize>, unit: f64) -> Result<Option<Amount>, TableError> {
+    fn amount(&self, column: Option<usize>, unit: f64) -> Result<Option<SpeedOrZone>, TableError> {
         let Some(column) = column else { return Ok(None) };
         let text = self.text(column);
         if text.is_empty() {
             return Ok(None);
         }
         if text.starts_with(|c: char| c.is_ascii_alphabetic()) {
-            return Ok(Some(Amount::Name(text.to_ascii_lowercase())));
+            return Ok(Some(SpeedOrZone::Name(text.to_ascii_lowercase())));
         }
         match self.number(column)? {
-            value if value > 0.0 => Ok(Some(Amount::Value(value * unit))),
+            value if value > 0.0 => Ok(Some(SpeedOrZone::Value(value * unit))),
             value => Err(self.error(column, format!("{value}: give a positive number or a name"))),
         }
     }
@@ -235,7 +235,7 @@ pub fn read(bytes: &[u8]) -> Result<Table, TableError> {
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let columns = Columns::read(bytes)?;
     let header = columns.names.join(",");
-    let layout = Layout::of(&columns, &header)?;
+    let layout = Layout::from_columns(&columns, &header)?;
     let (speed, zone) = (columns.find("speed"), columns.find("zone"));
     let mut used = layout.columns();
     used.extend(speed.iter().chain(&zone));
@@ -267,7 +267,7 @@ pub fn read(bytes: &[u8]) -> Result<Table, TableError> {
         return Err(TableError::TooFewRows(0, "give at least one point"));
     }
     let (points, length) = points(&rows, &layout, &mut notes)?;
-    let amounts = |column| -> Result<Vec<Option<Amount>>, TableError> {
+    let amounts = |column| -> Result<Vec<Option<SpeedOrZone>>, TableError> {
         rows.iter().map(|row| row.amount(column, length)).collect()
     };
     Ok(Table { points, speeds: amounts(speed)?, zones: amounts(zone)?, notes })
@@ -353,8 +353,8 @@ mod tests {
         let Points::Joints(q) = &table.points else { panic!("joints") };
         assert!((q[0][0] - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
         assert!((q[0][5] - 0.5_f64.to_radians()).abs() < 1e-15);
-        assert_eq!(table.speeds, [Some(Amount::Value(0.1))]);
-        assert_eq!(table.zones, [Some(Amount::Name("z10".into()))]);
+        assert_eq!(table.speeds, [Some(SpeedOrZone::Value(0.1))]);
+        assert_eq!(table.zones, [Some(SpeedOrZone::Name("z10".into()))]);
         let table = read(b"x,y,z,w,i,j,k\n500,0,900,0,0,1,0\n").expect("read");
         let Points::Poses(poses) = &table.points else { panic!("poses") };
         assert_eq!(poses[0].0.translation.x, 0.5);

@@ -148,7 +148,7 @@ pub(super) enum Fault {
 /// The simulation with each relocated wait folded into one event at its original place: settling,
 /// way out, standing, way back, with the sum of their energies. Also the faults by index of the
 /// wait; with faults the simulation is incomplete.
-pub(super) fn folded(
+pub(super) fn with_waits_folded(
     model: &Model,
     settings: &Settings,
     emitted: Simulated,
@@ -181,8 +181,8 @@ pub(super) fn folded(
             parts_energy.push(energy);
             taken += 1;
         }
-        let settling = events.last_mut().map_or(0.0, unsettle);
-        let fault = match excess(model, settings, &parts, &waits[index]) {
+        let settling = events.last_mut().map_or(0.0, remove_settling);
+        let fault = match excess_time(model, settings, &parts, &waits[index]) {
             Some(late) if (late + settling).abs() <= TIME_TOLERANCE => None,
             Some(late) if late + settling > 0.0 => Some(Fault::Late(late + settling)),
             _ => Some(Fault::Other),
@@ -211,7 +211,7 @@ pub(super) fn folded(
 }
 
 /// Removes the faulty waits; in the first round, late ones get shorter pauses instead.
-pub(super) fn mended(
+pub(super) fn repaired(
     waits: Vec<RelocatedWait>,
     faults: &BTreeMap<usize, Fault>,
     first: bool,
@@ -231,7 +231,7 @@ pub(super) fn mended(
 const WAY_AND_BACK: usize = 2;
 
 /// Removes the settling time of a run and returns it, s.
-fn unsettle(event: &mut Event) -> f64 {
+fn remove_settling(event: &mut Event) -> f64 {
     let What::Run(run) = &mut event.what else { return 0.0 };
     let settling = std::mem::take(&mut run.settling);
     if let Some(last) = run.moves.last_mut() {
@@ -243,7 +243,7 @@ fn unsettle(event: &mut Event) -> f64 {
 
 /// Excess time of the three events (way out, standing, way back) over the wait, s; `None` if they
 /// are not these or exceed limits.
-fn excess(
+fn excess_time(
     model: &Model,
     settings: &Settings,
     parts: &[Event],

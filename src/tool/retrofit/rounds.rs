@@ -9,7 +9,7 @@ use super::job::Job;
 use super::lower_limits;
 use super::outputs::{Outputs, emitted};
 use super::planning::Planning;
-use super::relocated_waits::{RelocatedWait, mended};
+use super::relocated_waits::{RelocatedWait, repaired};
 use super::rewritten::Rewritten;
 use super::settings::{Budget, Objective};
 use super::torque_demand::TorqueBound;
@@ -19,7 +19,7 @@ use super::verify_streams::all_failed;
 use crate::retime::optimize::allowed::Loads;
 
 /// Maximum number of rounds; the last one keeps no stream.
-const MOST_ROUNDS: usize = 12;
+const MAX_ROUNDS: usize = 12;
 
 /// The program with the streams and waits that pass the verification.
 pub(super) fn verified(
@@ -61,11 +61,11 @@ pub(super) fn verified(
         }
         rounds += 1;
         if !attempt.wait_faults.is_empty() {
-            waits = mended(waits, &attempt.wait_faults, rounds == 1);
+            waits = repaired(waits, &attempt.wait_faults, rounds == 1);
             continue;
         }
         let mut failed = attempt.failed;
-        if failed.is_empty() || rounds == MOST_ROUNDS {
+        if failed.is_empty() || rounds == MAX_ROUNDS {
             // The fault has no single cause: all streams are refused.
             let why = attempt.verification.broken().unwrap_or("the verification failed");
             failed.splice(0..0, all_failed(&candidates, &format!("did not hold: {why}")));

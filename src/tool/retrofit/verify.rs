@@ -9,7 +9,7 @@ use super::files::{OutputFile, OutputKind, Source, read_again};
 use super::job::Original;
 use super::order::same_order;
 use super::read::read_program;
-use super::relocated_waits::{Fault, RelocatedWait, folded};
+use super::relocated_waits::{Fault, RelocatedWait, with_waits_folded};
 use super::settings::{Budget, Settings};
 use super::simulated::{Simulated, TIME_TOLERANCE};
 use super::speed_slots::Slot;
@@ -97,7 +97,7 @@ pub(super) fn verify(
     let mut simulated = Simulated::with_energy(model, simulation);
     let mut wait_faults = BTreeMap::new();
     if let Rewrite::Streams { waits, .. } = rewrite {
-        (simulated, wait_faults) = folded(model, settings, simulated, waits);
+        (simulated, wait_faults) = with_waits_folded(model, settings, simulated, waits);
         verification.note("waits that are spent elsewhere take their time", wait_faults.is_empty());
     }
     let before = &original.cycle.simulation;

@@ -9,9 +9,9 @@ use crate::learn::excite::State;
 use crate::tool::cli::common::Format;
 
 /// Maximum distance of adaptive points from the path \[rad\].
-const OFF_PATH: f64 = 1e-3;
+const PATH_TOLERANCE: f64 = 1e-3;
 /// Maximum time between points \[s\].
-pub(super) const WIDEST: f64 = 0.1;
+pub(super) const MAX_SPACING: f64 = 0.1;
 
 /// A motion that lets a robot's parameters be told from its torques, as RAPID with a logger.
 #[derive(Debug, Args)]
@@ -118,7 +118,7 @@ impl Spacing {
                 let hardest = states.iter().flat_map(|[_, _, qdd]| qdd.iter());
                 let hardest = hardest.fold(0.0, |m: f64, x| m.max(x.abs()));
                 // The corner at a point is cut by q̈ Δt²/8.
-                (8.0 * OFF_PATH / hardest).sqrt().min(WIDEST)
+                (8.0 * PATH_TOLERANCE / hardest).sqrt().min(MAX_SPACING)
             }
         }
     }

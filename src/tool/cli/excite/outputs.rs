@@ -14,7 +14,7 @@ use crate::tool::cli::output;
 use crate::tool::emit::{Excitation, LoggedTorques, Points, excitation};
 
 /// Distance of the marks from the middle of joint 1's motion, as share of its range of motion.
-const MARKS: f64 = 0.02;
+const MARK_SHARE: f64 = 0.02;
 
 /// Writes the modules and the table; returns their paths.
 pub(super) fn write(
@@ -60,7 +60,7 @@ pub(super) fn write(
         start: start.unwrap_or_default(),
         lists,
         stop: stop.unwrap_or_default(),
-        marks: [middle - MARKS * range, middle + MARKS * range],
+        marks: [middle - MARK_SHARE * range, middle + MARK_SHARE * range],
         torques: logged_torques(args.torque, model)?,
     })?;
     let mut outputs = Vec::new();

@@ -14,7 +14,7 @@ const MODULES: [&str; 5] = ["mod", "sys", "prg", "modx", "sysx"];
 /// Extension of a program file, which lists modules.
 const PROGRAM: &str = "pgf";
 /// Searched extensions, for messages.
-const SOUGHT: &str = ".mod, .sys, .prg, .modx, .sysx or .pgf";
+const EXTENSIONS: &str = ".mod, .sys, .prg, .modx, .sysx or .pgf";
 /// Maximum depth of folders.
 const MAX_FOLDERS: usize = 32;
 
@@ -35,7 +35,7 @@ pub(in crate::tool::cli) enum InputError {
     Nothing,
     /// The folder contains no RAPID.
     #[error(
-        "no RAPID in '{0}': looked in it and its folders for {SOUGHT}; name a file to read it \
+        "no RAPID in '{0}': looked in it and its folders for {EXTENSIONS}; name a file to read it \
          whatever its extension"
     )]
     NoRapid(String),
@@ -63,7 +63,7 @@ pub(in crate::tool::cli) enum InputError {
     Unreadable(Unreadable),
 }
 
-pub(super) struct Found {
+pub(super) struct FoundFile {
     pub(super) path: PathBuf,
     /// Its path relative to the input, with `/`.
     pub(super) relative: String,
@@ -77,7 +77,7 @@ pub(super) struct Found {
 pub(super) fn find(
     path: &Path,
     unreadable: &mut Vec<Unreadable>,
-) -> Result<Vec<Found>, InputError> {
+) -> Result<Vec<FoundFile>, InputError> {
     let unusable = |error: std::io::Error| unreadable_input(path, error.to_string());
     if fs::metadata(path).map_err(unusable)?.is_dir() {
         fs::read_dir(path).map_err(unusable)?;
@@ -112,19 +112,19 @@ fn unreadable_input(path: &Path, reason: String) -> InputError {
     InputError::Unreadable(Unreadable { path: shown(path), reason })
 }
 
-fn found_below(root: &Path, path: PathBuf, named: bool) -> Found {
-    let relative = path.strip_prefix(root).map_or_else(|_| file_name(&path), below);
-    Found { path, relative, named, modules: None }
+fn found_below(root: &Path, path: PathBuf, named: bool) -> FoundFile {
+    let relative = path.strip_prefix(root).map_or_else(|_| file_name(&path), relative_text);
+    FoundFile { path, relative, named, modules: None }
 }
 
-fn found_listing(root: &Path, path: PathBuf, modules: &[PathBuf]) -> Found {
+fn found_listing(root: &Path, path: PathBuf, modules: &[PathBuf]) -> FoundFile {
     let modules = modules.iter().map(|module| shown(module)).collect();
-    Found { modules: Some(modules), ..found_below(root, path, true) }
+    FoundFile { modules: Some(modules), ..found_below(root, path, true) }
 }
 
 /// Gives files with equal paths below `--out` distinct ones, relative to their deepest common
 /// folder.
-pub(super) fn tell_apart(found: &mut [Found]) {
+pub(super) fn make_distinct(found: &mut [FoundFile]) {
     let mut places = BTreeSet::new();
     if found.iter().all(|file| places.insert(file.relative.clone())) {
         return;
@@ -136,12 +136,12 @@ pub(super) fn tell_apart(found: &mut [Found]) {
     let mut shared = absolute[0].parent().map_or_else(PathBuf::new, Path::to_path_buf);
     while !absolute.iter().all(|path| path.starts_with(&shared)) && shared.pop() {}
     for (file, absolute) in found.iter_mut().zip(&absolute) {
-        file.relative = below(absolute.strip_prefix(&shared).unwrap_or(absolute));
+        file.relative = relative_text(absolute.strip_prefix(&shared).unwrap_or(absolute));
     }
 }
 
 /// A path without components that lead out of a folder.
-pub(super) fn below(path: &Path) -> String {
+pub(super) fn relative_text(path: &Path) -> String {
     let parts = path.components().filter_map(|part| match part {
         Component::Normal(name) => Some(name.to_string_lossy()),
         _ => None,
@@ -154,7 +154,7 @@ fn file_name(path: &Path) -> String {
 }
 
 /// The modules that a program file lists.
-fn program(path: &Path, unreadable: &mut Vec<Unreadable>) -> Result<Vec<Found>, InputError> {
+fn program(path: &Path, unreadable: &mut Vec<Unreadable>) -> Result<Vec<FoundFile>, InputError> {
     let modules = listed(path)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut files = Vec::new();

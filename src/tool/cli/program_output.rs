@@ -66,7 +66,7 @@ fn rest_of_backup(
 }
 
 /// Refuses an output folder inside an input folder.
-pub(super) fn outside(folder: &Path, paths: &[PathBuf]) -> anyhow::Result<()> {
+pub(super) fn refuse_nested_output(folder: &Path, paths: &[PathBuf]) -> anyhow::Result<()> {
     let wanted = std::path::absolute(folder)?;
     let mut ancestors = wanted.ancestors();
     let real = ancestors.find_map(|path| path.canonicalize().ok());
@@ -137,8 +137,8 @@ pub(super) fn write_in_place(
 ) -> anyhow::Result<Vec<String>> {
     let mut changes = Vec::new();
     for file in new_first(result) {
-        let (path, after) = (place(job, file), encoded(job, file, &file.bytes));
-        let before = match original(job, file) {
+        let (path, after) = (path_in_tree(job, file), encoded(job, file, &file.bytes));
+        let before = match input_file(job, file) {
             Some((path, bytes)) => {
                 // An unreadable file could not be restored.
                 let now = std::fs::read(path).with_context(|| format!("cannot read '{path}'"))?;
@@ -181,17 +181,17 @@ fn encoded<'a>(job: &Job, file: &OutputFile, bytes: &'a [u8]) -> Cow<'a, [u8]> {
 }
 
 /// The current content of the user's file for an output, decoded in the same way.
-pub(super) fn now(job: &Job, file: &OutputFile) -> Option<Vec<u8>> {
+pub(super) fn current_bytes(job: &Job, file: &OutputFile) -> Option<Vec<u8>> {
     if !job.is_refreshed() {
-        return original(job, file).map(|(_, bytes)| bytes.to_vec());
+        return input_file(job, file).map(|(_, bytes)| bytes.to_vec());
     }
-    let path = place(job, file);
+    let path = path_in_tree(job, file);
     let bytes = std::fs::read(&path).ok()?;
     Some(SourceFile::new(FileId(0), path.display().to_string(), bytes).bytes)
 }
 
 /// Path and bytes of the input file of an output.
-fn original<'a>(job: &'a Job, file: &OutputFile) -> Option<(&'a str, &'a [u8])> {
+fn input_file<'a>(job: &'a Job, file: &OutputFile) -> Option<(&'a str, &'a [u8])> {
     match (file.kind, file.input) {
         (OutputKind::New, _) => None,
         (_, Some(i)) => job.files.get(i).map(|s| (s.file.path.as_str(), s.file.bytes.as_slice())),
@@ -205,8 +205,8 @@ fn original<'a>(job: &'a Job, file: &OutputFile) -> Option<(&'a str, &'a [u8])> 
 }
 
 /// The path of an output in the user's own tree.
-fn place(job: &Job, file: &OutputFile) -> PathBuf {
-    if let Some((path, _)) = original(job, file) {
+fn path_in_tree(job: &Job, file: &OutputFile) -> PathBuf {
+    if let Some((path, _)) = input_file(job, file) {
         return PathBuf::from(path);
     }
     let folder = |path: &str| Path::new(path).parent().map_or_else(PathBuf::new, Path::to_path_buf);
