@@ -18,7 +18,7 @@ use super::{diagnose, output};
 use crate::examine::blind::{self, Asked, FAMILY, Grades, KEY, Label, SEALS, Sealed, Settings};
 use crate::tool::report::html::grades_report;
 
-/// The sealed examination of diagnose: generate cases, grade what was said of them.
+/// The sealed examination of diagnose: generate cases, grade their diagnoses.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: joulepath blind generate --out cases --seed 7 --count 20\n         \
@@ -64,7 +64,7 @@ struct GenerateArgs {
     quiet: bool,
 }
 
-/// Open the seals and grade what was said of the cases.
+/// Open the seals and grade the diagnoses of the cases.
 #[derive(Debug, Args)]
 #[command(after_help = "Example: joulepath blind grade cases --results diagnoses --format json")]
 struct GradeArgs {
@@ -154,7 +154,7 @@ fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {
     for label in &labels {
         // A case name must not lead out of the folder.
         if label.case.contains(['/', '\\']) || label.case.starts_with('.') {
-            bail!("{KEY}: '{}' is no name of a case; take the file that was written", label.case);
+            bail!("{KEY}: '{}' is not a case name; use the file that was generated", label.case);
         }
         let without = without(label, args.leave_out.as_deref());
         if args.leave_out.is_some() && without.is_empty() {

@@ -42,7 +42,9 @@ pub(super) struct CalibrateArgs {
 
 pub(super) fn run(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
     if args.program.point_estimate {
-        bail!("--point-estimate has no use here: the plausible robots are what a log narrows");
+        bail!(
+            "--point-estimate leaves nothing to calibrate: a log narrows the plausible robots; leave it out"
+        );
     }
     let job = common::prepare(&args.program)?;
     let modules = job.input.files.iter().map(|file| Path::new(&file.source.path));

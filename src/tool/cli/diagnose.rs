@@ -26,7 +26,8 @@ use crate::learn::log::{Channel, ColumnMap};
 use crate::tool::report::diagnose as report;
 use crate::tool::report::html::diagnose_report;
 
-/// Where a model and logs of its robot part, which effect it is, and how far the gap shrinks.
+/// Find where a model differs from logs of its robot, which effect explains it, and how far the gap
+/// shrinks.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: joulepath diagnose --robot nominal.toml --log run1.csv run2.csv --heldout other.csv --out model.toml"

@@ -146,8 +146,8 @@ pub(super) fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
     }
     if found.quality.grade == Grade::None {
         bail!(
-            "no robot that can be has such torques ({}): check their signs, their time and that \
-             robot and log are the same",
+            "no physically possible robot has these torques ({}): check their signs and their time, \
+             and that the log is of this robot",
             found.quality.sentence()
         );
     }
@@ -404,7 +404,7 @@ fn write(
         let text = report::toml(found, basis);
         // The output must be a valid robot file.
         effects::from_toml(&path.display().to_string(), &text)
-            .context("the identified numbers are no robot file; nothing was written")?;
+            .context("the identified numbers make no valid robot file; nothing was written")?;
         output::write(path, text.as_bytes())?;
     }
     common::print(args.format, || report::json(found, basis, &path), || report::text(found, basis))

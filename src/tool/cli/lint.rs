@@ -44,7 +44,7 @@ pub(super) struct LintArgs {
     #[arg(long, value_name = "RULES", value_delimiter = ',')]
     pub(super) ignore: Vec<String>,
 
-    /// Least saving that is told, J.
+    /// Least saving that is reported, J.
     #[arg(long, value_name = "JOULES", allow_negative_numbers = true)]
     pub(super) threshold: Option<f64>,
 
@@ -72,7 +72,7 @@ pub(super) struct LintArgs {
     #[arg(long, value_name = "500J|3%", allow_hyphen_values = true)]
     pub(super) max_waste: Option<String>,
 
-    /// Findings that are known: they are not told.
+    /// A file of known findings, which are not reported.
     #[arg(long, value_name = "FILE")]
     pub(super) baseline: Option<PathBuf>,
 
@@ -196,8 +196,8 @@ fn settings(args: &LintArgs, config: &Config) -> anyhow::Result<Settings> {
     for selector in settings.select.iter().chain(&settings.ignore).chain(ignored).chain(weighed) {
         if !lint::ALL.iter().any(|rule| rule.is_meant(selector)) {
             bail!(
-                "no lint is meant by '{selector}': give a code such as EW101, the start of one, a \
-                 name or a family; joulepath rule lists them"
+                "'{selector}' selects no lint: give a code such as EW101, the start of one, a name or \
+                 a family; joulepath rule lists them"
             );
         }
     }

@@ -35,7 +35,9 @@ pub(super) fn parse(option: &str, text: &str) -> anyhow::Result<Load> {
     }
     let [w, i, j, k] = axes;
     let turn = UnitQuaternion::try_new(Quaternion::new(w, i, j, k), 1e-3)
-        .with_context(|| format!("{option} {text}: the axes are no orientation"))?
+        .with_context(|| {
+            format!("{option} {text}: the orientation of the axes is not a unit quaternion")
+        })?
         .to_rotation_matrix();
     let inertia =
         turn.matrix() * Matrix3::from_diagonal(&Vector3::from(moments)) * turn.matrix().transpose();

@@ -209,7 +209,7 @@ pub(super) fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
 /// Optimises a program that already has streams and replaces these.
 pub(super) fn refresh(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
     if args.undo {
-        bail!("refresh takes nothing back: joulepath optimize --undo does");
+        bail!("refresh cannot undo changes; use joulepath optimize --undo");
     }
     let mut input = input::read(&args.program.cell.paths)?;
     let streams = streams::remove_streams(&mut input)?;

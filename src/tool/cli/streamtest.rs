@@ -148,7 +148,8 @@ fn compare(
     path: &std::path::Path,
 ) -> anyhow::Result<ExitCode> {
     let shown = path.display();
-    let bytes = std::fs::read(path).with_context(|| format!("'{shown}' can't be read"))?;
+    let bytes = std::fs::read(path)
+        .with_context(|| format!("cannot read '{shown}'; check the path and its permissions"))?;
     let log = log::read(&bytes, &ColumnMap::default()).with_context(|| format!("'{shown}'"))?;
     let Some(command) = log.column(Channel::Command) else {
         bail!("'{shown}' has no column cmd, the number of the test: give the logger's file");

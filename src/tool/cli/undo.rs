@@ -77,7 +77,7 @@ pub(super) fn plan<'a>(
     let folder = undo_folder(&root)?;
     if folder.exists() && streams.is_empty() {
         bail!(
-            "'{}' holds the originals of an earlier --in-place: take that back first (joulepath \
+            "'{}' holds the originals of an earlier --in-place: undo that first (joulepath \
              optimize {} --undo), or move the folder away to keep its changes",
             folder.display(),
             root.display()

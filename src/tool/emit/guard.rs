@@ -64,16 +64,8 @@ struct PartText {
 #[derive(Serialize)]
 pub(super) struct TypeText {
     name: &'static str,
-    parts: Vec<ComponentText>,
-}
-
-/// A part of a datum that fits into a message.
-#[derive(Serialize)]
-struct ComponentText {
-    /// Suffix of the datum's name.
-    dotted: String,
-    /// Text in messages.
-    said: String,
+    /// Its components whose text is short enough for a string; empty if its own text is.
+    parts: &'static [&'static str],
 }
 
 pub(super) fn guard(site: &Site, prefix: &str, recorded: &Recorded, index: usize) -> Guard {
@@ -129,20 +121,9 @@ fn part(parameter: &Parameter, prefix: &str, name: String) -> PartText {
 pub(super) fn types(guards: &[&Guard]) -> Vec<TypeText> {
     let parts = guards.iter().flat_map(|guard| &guard.parts);
     let names: BTreeSet<&'static str> = parts.map(|part| part.r#type).collect();
-    let text = |name: &'static str| TypeText {
-        name,
-        parts: components(name)
-            .iter()
-            .map(|part| match *part {
-                "" => ComponentText { dotted: String::new(), said: String::new() },
-                part => ComponentText { dotted: format!(".{part}"), said: format!(" {part}") },
-            })
-            .collect(),
-    };
-    names.into_iter().map(text).collect()
+    names.into_iter().map(|name| TypeText { name, parts: components(name) }).collect()
 }
 
-/// The parts of a type whose text is short enough for a string.
 fn components(type_name: &str) -> &'static [&'static str] {
     match type_name {
         "robtarget" => &["trans", "rot", "robconf", "extax"],
@@ -168,7 +149,7 @@ fn components(type_name: &str) -> &'static [&'static str] {
             "oframe.rot",
         ],
         "loaddata" => &["mass", "cog", "aom", "ix", "iy", "iz"],
-        _ => &[""],
+        _ => &[],
     }
 }
 

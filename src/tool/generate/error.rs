@@ -39,7 +39,7 @@ pub enum GenerateError {
         error: IkError,
     },
     /// A name is not predefined in RAPID.
-    #[error("row {row}: '{name}' is no {what} of RAPID's own; give {example}, or a number")]
+    #[error("row {row}: '{name}' is not a predefined {what} of RAPID; give {example}, or a number")]
     Name {
         /// Line of the file.
         row: usize,
@@ -86,6 +86,6 @@ pub enum GenerateError {
     #[error(transparent)]
     Emit(#[from] EmitError),
     /// The emitted text fails its verification.
-    #[error("nothing is written, as the emitted program did not hold: {0}")]
+    #[error("the generated program failed its verification, and nothing is written: {0}")]
     Verification(String),
 }

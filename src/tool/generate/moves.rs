@@ -51,11 +51,10 @@ pub(super) fn moves(model: &Model, table: &Table, form: Form) -> Result<Moves, G
             Points::Poses(poses) => (poses[i].0, poses[i].1.unwrap_or_else(|| conf_of(model, &q))),
             _ => (fk(model, &q), conf_of(model, &q)),
         };
-        let speed =
-            speed_or_zone_text(row, table.speeds[i].as_ref(), "speeddata", SPEED, |metres| {
-                format!("v1000\\V:={}", number(metres * 1e3, 3))
-            })?;
-        let zone = speed_or_zone_text(row, table.zones[i].as_ref(), "zonedata", STOP, |metres| {
+        let speed = speed_or_zone(row, table.speeds[i].as_ref(), "speeddata", SPEED, |metres| {
+            format!("v1000\\V:={}", number(metres * 1e3, 3))
+        })?;
+        let zone = speed_or_zone(row, table.zones[i].as_ref(), "zonedata", STOP, |metres| {
             format!("z10\\Z:={}", number(metres * 1e3, 3))
         })?;
         let zone = if i == last && zone != STOP {
@@ -89,7 +88,7 @@ fn joint_positions(
 }
 
 /// The RAPID text of a speed or zone.
-fn speed_or_zone_text(
+fn speed_or_zone(
     row: usize,
     amount: Option<&SpeedOrZone>,
     r#type: &str,

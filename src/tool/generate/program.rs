@@ -109,10 +109,10 @@ fn with_main_module(
 }
 
 fn check_text(outputs: &[OutputFile]) -> Result<(), GenerateError> {
-    if parses(&[], outputs) { Ok(()) } else { Err(verification_error("the text does not parse")) }
+    if parses(&[], outputs) { Ok(()) } else { Err(unverified("the text does not parse")) }
 }
 
-fn verification_error(what: impl Into<String>) -> GenerateError {
+fn unverified(what: impl Into<String>) -> GenerateError {
     GenerateError::Verification(what.into())
 }
 
@@ -120,11 +120,11 @@ fn verification_error(what: impl Into<String>) -> GenerateError {
 fn simulated(model: &Model, outputs: &[OutputFile]) -> Result<Simulation, GenerateError> {
     check_text(outputs)?;
     let simulation = run_again(outputs, "main", model, &Options::default())
-        .map_err(|error| verification_error(error.to_string()))?;
+        .map_err(|error| unverified(error.to_string()))?;
     match simulation.unresolved.first() {
         Some(note) => {
             let place = file_and_line(&read_again(outputs), note.span);
-            Err(verification_error(format!("{place}: {}", note.reason)))
+            Err(unverified(format!("{place}: {}", note.reason)))
         }
         None => Ok(simulation),
     }
@@ -144,13 +144,13 @@ pub(super) fn verify_stream(
         },
         _ => None,
     });
-    let stream = stream.ok_or_else(|| verification_error("the points do not run as a stream"))?;
+    let stream = stream.ok_or_else(|| unverified("the points do not run as a stream"))?;
     let measure = follow::measure(model, stream, &followed.reference);
     if let Some(fault) = measure.exceeded_limit() {
-        return Err(verification_error(fault));
+        return Err(unverified(fault));
     }
     if measure.deviation_m > TOLERANCE {
-        return Err(verification_error("the stream strays from the trajectory"));
+        return Err(unverified("the stream strays from the trajectory"));
     }
     Ok(measure)
 }
@@ -166,12 +166,12 @@ pub(super) fn verify_moves(
     for event in &simulation.events {
         let What::Run(run) = &event.what else { continue };
         if let Some(problem) = &run.problem {
-            return Err(verification_error(format!("row {}: {problem}", reached + 2)));
+            return Err(unverified(format!("row {}: {problem}", reached + 2)));
         }
         for leg in &run.legs {
             let far = |j: usize| (leg.end[j] - moves.targets[reached].q[j]).abs();
             if let Some(joint) = (0..DOF).find(|j| far(*j) > REACHED) {
-                return Err(verification_error(format!(
+                return Err(unverified(format!(
                     "row {}: the movement would end with joint {} elsewhere; give its configuration \
                      (cf1,cf4,cf6,cfx), or another point between",
                     reached + 2,
@@ -183,17 +183,11 @@ pub(super) fn verify_moves(
         let count = (run.duration() * SAMPLES).ceil().max(1.0) as usize;
         let mut times = (0..=count).map(|i| run.duration() * i as f64 / count as f64);
         if let Some(violation) = times.find_map(|t| limits_ok(model, &run.at(t).q).err()) {
-            return Err(verification_error(format!(
-                "on the way to row {}: {violation}",
-                reached + 1
-            )));
+            return Err(unverified(format!("on the way to row {}: {violation}", reached + 1)));
         }
     }
     if reached != moves.targets.len() {
-        return Err(verification_error(format!(
-            "{reached} of {} points are reached",
-            moves.targets.len()
-        )));
+        return Err(unverified(format!("{reached} of {} points are reached", moves.targets.len())));
     }
     let first = simulation.events.first().map_or(0.0, |event| match &event.what {
         What::Run(run) => run.moves.first().map_or(0.0, |first| first.duration),

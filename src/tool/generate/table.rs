@@ -91,7 +91,7 @@ struct Columns {
 }
 
 impl Columns {
-    fn read(bytes: &[u8]) -> Result<Columns, TableError> {
+    fn read(bytes: &[u8]) -> Result<(Columns, csv::Reader<&[u8]>), TableError> {
         let first = bytes.split(|byte| *byte == b'\n').next().unwrap_or_default();
         let columns = |delimiter: u8| first.split(|byte| *byte == delimiter).count();
         let delimiter = DELIMITERS
@@ -110,7 +110,7 @@ impl Columns {
                 return Err(TableError::DuplicateColumn(name.clone()));
             }
         }
-        Ok(Columns { names, delimiter })
+        Ok((Columns { names, delimiter }, reader))
     }
 
     fn find(&self, name: &str) -> Option<usize> {
@@ -233,7 +233,7 @@ impl Row<'_> {
 /// The columns match no kind of points, or a cell is invalid (the first one, by row and column).
 pub fn read(bytes: &[u8]) -> Result<Table, TableError> {
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
-    let columns = Columns::read(bytes)?;
+    let (columns, mut reader) = Columns::read(bytes)?;
     let header = columns.names.join(",");
     let layout = Layout::from_columns(&columns, &header)?;
     let (speed, zone) = (columns.find("speed"), columns.find("zone"));
@@ -248,8 +248,6 @@ pub fn read(bytes: &[u8]) -> Result<Table, TableError> {
         notes.push(format!("columns that are not used: {}", unused.join(", ")));
     }
 
-    let mut reader =
-        ReaderBuilder::new().delimiter(columns.delimiter).flexible(true).from_reader(bytes);
     let mut rows: Vec<(u64, ByteRecord)> = Vec::new();
     let mut record = ByteRecord::new();
     while reader.read_byte_record(&mut record).unwrap_or(false) {

@@ -13,7 +13,7 @@ const PATH_TOLERANCE: f64 = 1e-3;
 /// Maximum time between points \[s\].
 pub(super) const MAX_SPACING: f64 = 0.1;
 
-/// A motion that lets a robot's parameters be told from its torques, as RAPID with a logger.
+/// Design a motion that identifies a robot's parameters from its torques, as RAPID with a logger.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: joulepath excite --robot IRB1600-10/1.45 --plane \"1,0,0,-0.8\" --out excitation"
@@ -27,7 +27,7 @@ pub(in crate::tool::cli) struct ExciteArgs {
     #[arg(long, value_name = "DIR")]
     pub(super) out: PathBuf,
 
-    /// What is to be told.
+    /// What the motion identifies.
     #[arg(long, value_enum, default_value_t = Variant::Full)]
     pub(super) variant: Variant,
 
@@ -60,11 +60,11 @@ pub(in crate::tool::cli) struct ExciteArgs {
     #[arg(long, allow_negative_numbers = true, value_name = "SECONDS", default_value = "0.01")]
     pub(super) spacing: Spacing,
 
-    /// Where the logger has torques from.
+    /// Where the logger reads torques from.
     #[arg(long, value_enum, default_value_t = TorqueArg::TestSignal)]
     pub(super) torque: TorqueArg,
 
-    /// Where the tool reaches, tool0, mm.
+    /// The tool centre point in tool0, mm.
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub(super) tool: Option<String>,
 

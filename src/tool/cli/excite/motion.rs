@@ -55,7 +55,7 @@ pub(super) fn designed_motion(
             && checked.to_itself >= 0.0
     };
     let Some((series, blends)) = blends(model, &found.series, &fits) else {
-        bail!("no way from rest into the motion keeps the limits: give another --seed");
+        bail!("no blend from rest into the motion keeps the limits: give another --seed");
     };
     let states = sampled(&series);
     // A period has a whole number of points; a slow motion needs no more points.
