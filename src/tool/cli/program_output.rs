@@ -98,7 +98,7 @@ pub(super) fn write_folder(
 ) -> anyhow::Result<Vec<String>> {
     for file in &result.outputs {
         let path = folder.join(&file.path);
-        if job.files.iter().any(|source| is_same_file(Path::new(&source.file.path), &path)) {
+        if job.files.iter().any(|source| is_same_file(&path, Path::new(&source.file.path))) {
             bail!(
                 "'{}' is a file of the program itself; name another folder, or give --in-place, \
                  which keeps the originals",

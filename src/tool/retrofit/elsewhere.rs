@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::statements::{calls, statements, written};
+use super::statements::{calls, statements, written_places};
 use crate::rapid::builtins::{Instruction, instruction, may_write};
 use crate::rapid::ir::hir::{DataKind, Expr, Ident, Routine};
 use crate::rapid::ir::lower;
@@ -24,7 +24,7 @@ pub fn written_in<'f>(files: impl Iterator<Item = &'f SourceFile>) -> BTreeSet<S
             for block in module.routines.iter().flat_map(Routine::blocks) {
                 by_name |= calls(block).any(|(_, name, _)| finds_by_name(name));
                 let places =
-                    statements(block).into_iter().flat_map(|stmt| written(stmt, may_write));
+                    statements(block).into_iter().flat_map(|stmt| written_places(stmt, may_write));
                 names.extend(places.filter_map(Expr::base).map(|name| name.key.clone()));
             }
         }

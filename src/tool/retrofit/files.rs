@@ -68,7 +68,7 @@ pub(super) fn unchanged(files: &[Source]) -> Vec<OutputFile> {
 }
 
 /// All files of the program, with these edits; `None` if edits overlap.
-pub(super) fn edited(
+pub(super) fn with_edits(
     files: &[Source],
     edits: impl Iterator<Item = Edit>,
 ) -> Option<Vec<OutputFile>> {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::statements::{statements, written, written_by_functions};
+use super::statements::{places_written_by_functions, statements, written_places};
 use crate::rapid::builtins::{self, Instruction, Source, is_movement, may_write};
 use crate::rapid::ir::hir::{Block, Callee, Expr, ExprKind, Routine, StmtKind};
 use crate::rapid::ir::program::{DataId, Program, RoutineId, Symbol};
@@ -38,7 +38,11 @@ fn traps(program: &Program) -> Vec<(String, Reach)> {
                     let routine = program.routine(id);
                     for expr in routine.data.iter().filter_map(|data| data.init.as_ref()) {
                         reach.expr(program, id.module, expr);
-                        reach.write(program, id.module, &written_by_functions(vec![expr]));
+                        reach.add_writes(
+                            program,
+                            id.module,
+                            &places_written_by_functions(vec![expr]),
+                        );
                     }
                     for block in routine.blocks() {
                         reach.block(program, id.module, block);
@@ -102,7 +106,7 @@ impl Reach {
         }
     }
 
-    fn write(&mut self, program: &Program, module: usize, places: &[&Expr]) {
+    fn add_writes(&mut self, program: &Program, module: usize, places: &[&Expr]) {
         for name in places.iter().filter_map(|place| place.base()) {
             if let Some(Symbol::Data(id)) = program.resolve(module, &name.key) {
                 self.written.insert(id);
@@ -123,7 +127,7 @@ impl Reach {
     fn block(&mut self, program: &Program, module: usize, block: &Block) {
         let may_write = |key: &str| program.resolve(module, key).is_some() || may_write(key);
         for stmt in statements(block) {
-            self.write(program, module, &written(stmt, may_write));
+            self.add_writes(program, module, &written_places(stmt, may_write));
             if let StmtKind::Call(call) = &stmt.kind {
                 match &call.callee {
                     Callee::Name(name) => self.call(program, module, &name.text),

@@ -4,7 +4,7 @@ use super::candidate::Candidate;
 use super::emission_context::EmissionContext;
 use super::emitted_sites::{emitted_site, emitted_wait};
 use super::error::RetrofitError;
-use super::files::{OutputFile, edited, unchanged};
+use super::files::{OutputFile, unchanged, with_edits};
 use super::job::Original;
 use super::relocated_waits::RelocatedWait;
 use crate::rapid::text::Span;
@@ -27,7 +27,8 @@ pub(super) fn emitted(
     }
     let emitted = emit::emit(&context.emission, &emitted_sites)?;
     // Insertions at distinct places cannot overlap.
-    let mut outputs = edited(files, emitted.edits.into_iter()).unwrap_or_else(|| unchanged(files));
+    let mut outputs =
+        with_edits(files, emitted.edits.into_iter()).unwrap_or_else(|| unchanged(files));
     let entry_file = &files[context.beside];
     let folder = entry_file.relative.rsplit_once('/').map_or("", |(folder, _)| folder);
     let end_of_line = emit::end_of_line(&entry_file.file.bytes);

@@ -1,7 +1,7 @@
 //! The search for the programmed speeds of least energy.
 
 use super::cycle_time::cycle;
-use super::files::{OutputFile, Source, edited, read_again};
+use super::files::{OutputFile, Source, read_again, with_edits};
 use super::job::Job;
 use super::order::same_order;
 use super::read::read_program;
@@ -126,5 +126,5 @@ fn try_speeds(job: &Job<'_>, slots: &[Slot], factors: &[f64]) -> Option<Simulate
 /// The files of the program with these factors.
 fn with_speeds(files: &[Source], slots: &[Slot], factors: &[f64]) -> Option<Vec<OutputFile>> {
     let edits = slots.iter().zip(factors).flat_map(|(slot, factor)| slot.edits(*factor));
-    edited(files, edits)
+    with_edits(files, edits)
 }

@@ -27,8 +27,8 @@ pub(super) fn calls(block: &Block) -> impl Iterator<Item = (&Stmt, &Ident, &Call
 
 /// What a statement may write: its target, and arguments of calls. `may_write`: whether a procedure
 /// of this name (lower case) may write its arguments.
-pub(super) fn written(stmt: &Stmt, may_write: impl Fn(&str) -> bool) -> Vec<&Expr> {
-    let mut places = written_by_functions(stmt.kind.exprs());
+pub(super) fn written_places(stmt: &Stmt, may_write: impl Fn(&str) -> bool) -> Vec<&Expr> {
+    let mut places = places_written_by_functions(stmt.kind.exprs());
     match &stmt.kind {
         StmtKind::Assign { target, .. } => places.push(target),
         StmtKind::Call(call) => {
@@ -41,7 +41,7 @@ pub(super) fn written(stmt: &Stmt, may_write: impl Fn(&str) -> bool) -> Vec<&Exp
 }
 
 /// The arguments that function calls within these expressions may write.
-pub(super) fn written_by_functions(mut open: Vec<&Expr>) -> Vec<&Expr> {
+pub(super) fn places_written_by_functions(mut open: Vec<&Expr>) -> Vec<&Expr> {
     let mut places = Vec::new();
     while let Some(expr) = open.pop() {
         if let ExprKind::Call(name, args) = &expr.kind

@@ -92,7 +92,7 @@ pub(super) fn verify(
     let simulation = simulation.unwrap_or_else(|_| {
         verification.note("the emitted program has its entry", false);
         text_holds = false;
-        nothing()
+        empty_simulation()
     });
     let mut simulated = Simulated::with_energy(model, simulation);
     let mut wait_faults = BTreeMap::new();
@@ -142,7 +142,7 @@ pub(super) fn verify(
 }
 
 /// The simulation of a program that cannot be read.
-fn nothing() -> Simulation {
+fn empty_simulation() -> Simulation {
     Simulation {
         events: Vec::new(),
         cycle_s: 0.0,
