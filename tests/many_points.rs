@@ -90,13 +90,13 @@ fn emitted(layout: Layout) -> Vec<SourceFile> {
     let posture = [0.1; 6];
     let place = fk(&model, &posture).translation.vector.into();
     let emission = Emission {
-        files: std::slice::from_ref(&file),
-        names: &names,
+        files: vec![file.clone()],
+        names,
         layout,
-        robot: &Robot { kind: "1600".into(), posture, place },
+        robot: Robot { kind: "1600".into(), posture, place },
         override_percent: 100.0,
-        recorded: &Recorded::default(),
-        program: "0",
+        recorded: Recorded::default(),
+        program: "0".into(),
     };
     let emitted = emit(&emission, &sites).unwrap();
     let bytes = text::apply(&file.bytes, &emitted.edits).unwrap();

@@ -9,7 +9,7 @@ use crate::tool::retrofit::{OutputFile, OutputKind, Retrofit};
 const MARK: u8 = b'@';
 
 /// Adds the backup's list to the outputs, with the new modules next to those of their folder.
-pub fn add(result: &mut Retrofit, input: &Input) {
+pub(super) fn add(result: &mut Retrofit, input: &Input) {
     let new: Vec<(String, String, String)> = result
         .outputs
         .iter()
@@ -81,7 +81,7 @@ fn extended(bytes: &[u8], task: &str, folder: &str, name: &str) -> Option<Vec<u8
 }
 
 /// The list without the modules of these file names.
-pub fn without(bytes: &[u8], names: &[String]) -> Vec<u8> {
+pub(super) fn without(bytes: &[u8], names: &[String]) -> Vec<u8> {
     let is_one = |line: &&[u8]| {
         let text = String::from_utf8_lossy(line).to_lowercase();
         let path = text.split(char::from(MARK)).next().unwrap_or_default().trim();

@@ -19,39 +19,39 @@ const MODULE_FOLDERS: [&str; 2] = ["PROGMOD", "SYSMOD"];
 
 /// The content of a backup that describes its controller.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Backup {
+pub(super) struct Backup {
     /// Version of `RobotWare`.
-    pub robotware: Option<String>,
+    pub(super) robotware: Option<String>,
     /// Products and options, as listed.
-    pub options: Vec<String>,
+    pub(super) options: Vec<String>,
     /// The tasks, by folder.
-    pub tasks: Vec<Task>,
+    pub(super) tasks: Vec<Task>,
 }
 
 /// A task of a controller.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Task {
+pub(super) struct Task {
     /// Its folder below `RAPID`.
-    pub folder: String,
+    pub(super) folder: String,
     /// Its name, `T_ROB1` …; the folder name if unknown.
-    pub name: String,
+    pub(super) name: String,
     /// Whether it moves a robot.
-    pub motion: bool,
+    pub(super) motion: bool,
     /// Type name of its robot on the controller.
-    pub robot: Option<String>,
+    pub(super) robot: Option<String>,
     /// The routine that starts it, if stated.
-    pub entry: Option<String>,
+    pub(super) entry: Option<String>,
 }
 
 impl Backup {
     /// Name of the task with this folder; the folder name if there is none.
-    pub fn task_name<'n>(&'n self, folder: &'n str) -> &'n str {
+    pub(super) fn task_name<'n>(&'n self, folder: &'n str) -> &'n str {
         let task = self.tasks.iter().find(|task| task.folder == folder);
         task.map_or(folder, |task| &task.name)
     }
 
     /// A summary in one line.
-    pub fn summary(&self) -> String {
+    pub(super) fn summary(&self) -> String {
         let version = self.robotware.as_deref().unwrap_or("of unknown version");
         let tasks = self.tasks.iter().map(|task| {
             let robot = task.robot.as_deref().map(|robot| format!(", {robot}"));
@@ -64,7 +64,7 @@ impl Backup {
 }
 
 /// The backup and the task's folder that contain a module.
-pub fn place(path: &Path) -> Option<(PathBuf, String)> {
+pub(super) fn place(path: &Path) -> Option<(PathBuf, String)> {
     let modules = path.parent()?;
     let task = modules.parent()?;
     let rapid = task.parent()?;
@@ -75,23 +75,22 @@ pub fn place(path: &Path) -> Option<(PathBuf, String)> {
 }
 
 /// The file of the motion configuration of the backup at `root`.
-pub fn motion_configuration(root: &Path) -> Option<PathBuf> {
+pub(super) fn motion_configuration(root: &Path) -> Option<PathBuf> {
     child(&child(root, "SYSPAR")?, "MOC.cfg")
 }
 
 /// The file that lists the modules of the backup at `root`.
-pub fn information(root: &Path) -> Option<PathBuf> {
+pub(super) fn information(root: &Path) -> Option<PathBuf> {
     child(&child(root, "BACKINFO")?, "backinfo.txt")
 }
 
 /// Reads the backup at `root`; missing and broken parts are skipped.
-pub fn read(root: &Path) -> Backup {
+pub(super) fn read(root: &Path) -> Backup {
     let file = |folder: &str, name: &str| {
         let path = child(&child(root, folder)?, name)?;
         fs::read(path).ok().map(|bytes| text::decode(&bytes).text)
     };
-    let info = information(root).and_then(|path| fs::read(path).ok());
-    let info = info.map(|bytes| text::decode(&bytes).text).unwrap_or_default();
+    let info = file("BACKINFO", "backinfo.txt").unwrap_or_default();
     let system = file("SYSPAR", "SYS.cfg").unwrap_or_default();
     let motion = file("SYSPAR", "MOC.cfg").unwrap_or_default();
     let parameters = Parameters {
@@ -121,7 +120,7 @@ pub fn read(root: &Path) -> Backup {
 }
 
 /// Whether all tasks share the modules of this folder.
-pub fn is_shared(folder: &str) -> bool {
+pub(super) fn is_shared(folder: &str) -> bool {
     folder.eq_ignore_ascii_case(SHARED)
 }
 
@@ -203,7 +202,7 @@ fn task_folders(root: &Path) -> Vec<String> {
 }
 
 /// The file or folder of this name, without regard to case.
-pub fn child(folder: &Path, name: &str) -> Option<PathBuf> {
+pub(super) fn child(folder: &Path, name: &str) -> Option<PathBuf> {
     let exact = folder.join(name);
     if exact.exists() {
         return Some(exact);

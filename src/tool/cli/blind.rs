@@ -4,30 +4,27 @@ mod family;
 
 use std::fmt::Write as _;
 use std::fs;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, bail};
 use clap::{Args, Subcommand};
 use rayon::prelude::*;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use self::family::family;
 use super::common::{self, Format};
 use super::{diagnose, output};
-use crate::examine::blind::{
-    self, Asked, Case, FAMILY, Grades, KEY, Label, SEALS, Sealed, Settings,
-};
+use crate::examine::blind::{self, Asked, FAMILY, Grades, KEY, Label, SEALS, Sealed, Settings};
 use crate::tool::report::html::grades_report;
 
-/// The sealed examination of diagnose: generate cases, grade what was said of them.
+/// The sealed examination of diagnose: generate cases, grade their diagnoses.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: joulepath blind generate --out cases --seed 7 --count 20\n         \
     joulepath blind grade cases --format json"
 )]
-pub struct BlindArgs {
+pub(super) struct BlindArgs {
     #[command(subcommand)]
     command: BlindCommand,
 }
@@ -67,7 +64,7 @@ struct GenerateArgs {
     quiet: bool,
 }
 
-/// Open the seals and grade what was said of the cases.
+/// Open the seals and grade the diagnoses of the cases.
 #[derive(Debug, Args)]
 #[command(after_help = "Example: joulepath blind grade cases --results diagnoses --format json")]
 struct GradeArgs {
@@ -96,11 +93,7 @@ struct GradeArgs {
 /// Permitted periods of the generated motions \[s\].
 const PERIODS_S: [f64; 2] = [2.0, 60.0];
 
-/// Runs the command.
-///
-/// # Errors
-/// Cases cannot be written or read, or a seal does not match.
-pub fn run(args: &BlindArgs) -> anyhow::Result<ExitCode> {
+pub(super) fn run(args: &BlindArgs) -> anyhow::Result<ExitCode> {
     match &args.command {
         BlindCommand::Generate(args) => generate(args),
         BlindCommand::Grade(args) => grade(args),
@@ -130,7 +123,8 @@ fn generate(args: &GenerateArgs) -> anyhow::Result<ExitCode> {
         .map(|number| {
             let case = blind::case(&settings, number)
                 .context("the catalogue has none of the robots of the examination")?;
-            write_case(out, &case)?;
+            let files = case.files.iter().map(|(name, text)| (name, text));
+            output::write_folder(&out.join(&case.name), files)?;
             progress.inc(1);
             Ok((case.label, case.salt))
         })
@@ -142,13 +136,6 @@ fn generate(args: &GenerateArgs) -> anyhow::Result<ExitCode> {
     let text = format!("{} cases in '{}', the truth sealed in {KEY}", args.count, out.display());
     common::note(args.quiet, &text);
     Ok(ExitCode::SUCCESS)
-}
-
-fn write_case(out: &Path, case: &Case) -> anyhow::Result<()> {
-    let folder = out.join(&case.name);
-    let files: Vec<(PathBuf, &[u8])> =
-        case.files.iter().map(|(name, text)| (PathBuf::from(name), text.as_bytes())).collect();
-    output::write_folder(&folder, &files)
 }
 
 fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {
@@ -167,7 +154,7 @@ fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {
     for label in &labels {
         // A case name must not lead out of the folder.
         if label.case.contains(['/', '\\']) || label.case.starts_with('.') {
-            bail!("{KEY}: '{}' is no name of a case; take the file that was written", label.case);
+            bail!("{KEY}: '{}' is not a case name; use the file that was generated", label.case);
         }
         let without = without(label, args.leave_out.as_deref());
         if args.leave_out.is_some() && without.is_empty() {
@@ -185,7 +172,7 @@ fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {
             serde_json::from_str(&read(&path)?)
                 .with_context(|| format!("'{shown}' is no JSON; write it again with diagnose"))?
         } else {
-            diagnosed(&args.cases.join(&label.case), &name, &without)?
+            diagnosis_of_case(&args.cases.join(&label.case), &name, &without)?
         });
         graded.push(label.clone());
     }
@@ -194,12 +181,7 @@ fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {
         let page = grades_report(&grades)?;
         output::write(path, page.as_bytes()).with_context(|| path.display().to_string())?;
     }
-    let text = match args.format {
-        Format::Json => serde_json::to_string_pretty(&grades)? + "\n",
-        Format::Text => table(&grades),
-    };
-    std::io::stdout().lock().write_all(text.as_bytes())?;
-    Ok(ExitCode::SUCCESS)
+    common::print(args.format, || json!(grades), || table(&grades))
 }
 
 /// The effects that are left out for a case; empty if the case is not graded.
@@ -213,11 +195,11 @@ fn without<'a>(label: &'a Label, left_out: Option<&'a str>) -> Vec<&'a str> {
 }
 
 /// The JSON of `diagnose` for a case without some effects; stored as `name` in the case folder.
-fn diagnosed(case: &Path, name: &str, without: &[&str]) -> anyhow::Result<Value> {
+fn diagnosis_of_case(case: &Path, name: &str, without: &[&str]) -> anyhow::Result<Value> {
     let options: Value = serde_json::from_str(&read(&case.join("case.json"))?)
         .with_context(|| format!("'{}' has no case.json", case.display()))?;
-    let value =
-        diagnose::of_case(case, &options, without).with_context(|| case.display().to_string())?;
+    let value = diagnose::diagnose_case(case, &options, without)
+        .with_context(|| case.display().to_string())?;
     // A cache for the next grading.
     let text = format!("{value:#}\n");
     output::write(&case.join(name), text.as_bytes())?;
@@ -245,21 +227,11 @@ fn table(grades: &Grades) -> String {
         grades.confusion.values().flat_map(|row| row.keys().copied()).collect();
     columns.sort_unstable();
     columns.dedup();
-    let _ = writeln!(
-        text,
-        "{:<22}{}",
-        "truth",
-        columns.iter().fold(String::new(), |mut row, name| {
-            let _ = write!(row, "{name:>16}");
-            row
-        })
-    );
+    let names: String = columns.iter().map(|name| format!("{name:>16}")).collect();
+    let _ = writeln!(text, "{:<22}{names}", "truth");
     for (truth, row) in &grades.confusion {
-        let _ = write!(text, "{truth:<22}");
-        for column in &columns {
-            let _ = write!(text, "{:>16}", row.get(column).copied().unwrap_or(0));
-        }
-        text.push('\n');
+        let count = |column: &&str| format!("{:>16}", row.get(column).copied().unwrap_or(0));
+        let _ = writeln!(text, "{truth:<22}{}", columns.iter().map(count).collect::<String>());
     }
     text.push_str("\nrate                          of      %   95 % interval   asked\n");
     for rate in &grades.rates {

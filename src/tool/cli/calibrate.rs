@@ -1,6 +1,5 @@
 //! `joulepath calibrate`: narrows a robot's estimate by measured power.
 
-use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -8,11 +7,12 @@ use anyhow::{Context, bail};
 use clap::Args;
 
 use super::common::{self, ProgramArgs};
+use super::logs::{self, RawLog};
 use super::{output, signals};
 use crate::arm::robot::{Model, to_toml};
 use crate::learn::calibrate::calibrate;
 use crate::learn::identify::per_ampere;
-use crate::learn::log::{self, Channel, ColumnMap, Log};
+use crate::learn::log::{Channel, ColumnMap, Log};
 use crate::retime::motion;
 use crate::tool::report::calibrate as report;
 use crate::tool::retrofit::read_program;
@@ -22,7 +22,7 @@ use crate::tool::retrofit::read_program;
 #[command(
     after_help = "Example: joulepath calibrate fixtures/pick_place --robot IRB2600-20/1.65 --log power.csv --out cell.toml\n         then: joulepath optimize fixtures/pick_place --robot cell.toml"
 )]
-pub struct CalibrateArgs {
+pub(super) struct CalibrateArgs {
     #[command(flatten)]
     program: ProgramArgs,
 
@@ -40,40 +40,31 @@ pub struct CalibrateArgs {
     out: PathBuf,
 }
 
-/// Runs the command.
-///
-/// # Errors
-/// Unusable input, a log that does not match the program or the robot, or output that can't be
-/// written.
-pub fn run(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
+pub(super) fn run(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
     if args.program.point_estimate {
-        bail!("--point-estimate has no use here: the plausible robots are what a log narrows");
+        bail!(
+            "--point-estimate leaves nothing to calibrate: a log narrows the plausible robots; leave it out"
+        );
     }
     let job = common::prepare(&args.program)?;
-    let real = |path: &Path| path.canonicalize().ok();
     let modules = job.input.files.iter().map(|file| Path::new(&file.source.path));
     let mut inputs =
         modules.chain([args.log.as_path()]).chain(job.model.file.as_deref().map(Path::new));
-    if let Some(out) = real(&args.out)
-        && inputs.any(|input| real(input).is_some_and(|input| input == out))
-    {
+    if inputs.any(|input| output::is_same_file(input, &args.out)) {
         bail!("'{}' is read by this command, too: name another file for --out", args.out.display());
     }
     let (program, entry) = read_program(&job.files, &job.entry)?;
     signals::check(&args.program.cell, &job.options.levels, &program)?;
     let quiet = args.program.cell.quiet;
-    let shown = args.log.display().to_string();
-    let file = File::open(&args.log)
-        .with_context(|| format!("cannot read '{shown}'; check the path and its permissions"))?;
-    let log = log::read_from(file, &ColumnMap::parse(&args.map)?).with_context(|| shown.clone())?;
-    for rejected in log.rejected.iter().take(SHOWN) {
+    let RawLog { shown, log, .. } = logs::read(&args.log, &ColumnMap::parse(&args.map)?)?;
+    for rejected in log.rejected.iter().take(MAX_LISTED_ROWS) {
         common::note(
             quiet,
             &format!("{shown}: row {} is left out: {}", rejected.row, rejected.reason),
         );
     }
-    if log.rejected.len() > SHOWN {
-        let more = log.rejected.len() - SHOWN;
+    if log.rejected.len() > MAX_LISTED_ROWS {
+        let more = log.rejected.len() - MAX_LISTED_ROWS;
         common::note(quiet, &format!("{shown}: {more} more rows are left out"));
     }
     if log.column(Channel::Power).is_none() {
@@ -99,12 +90,11 @@ pub fn run(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
         args.program.format,
         || report::json(&found, &path),
         || report::text(&found, &path),
-    )?;
-    Ok(ExitCode::SUCCESS)
+    )
 }
 
 /// Maximum number of rejected rows that are listed individually.
-const SHOWN: usize = 3;
+const MAX_LISTED_ROWS: usize = 3;
 
 /// Torques of all joints, logged or from currents, and why currents are not usable.
 fn torques(model: &Model, log: &Log) -> (Option<Vec<Vec<f64>>>, Option<String>) {

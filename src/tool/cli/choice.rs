@@ -9,22 +9,22 @@ use super::input::{Input, InputFile};
 
 /// The files of one program.
 #[derive(Debug)]
-pub struct Choice<'i> {
+pub(super) struct Choice<'i> {
     /// The files, in input order.
-    pub files: Vec<&'i InputFile>,
+    pub(super) files: Vec<&'i InputFile>,
     /// Their task, if they belong to a backup.
-    pub task: Option<&'i Task>,
+    pub(super) task: Option<&'i Task>,
     /// The folder of that backup.
-    pub backup: Option<&'i Path>,
+    pub(super) backup: Option<&'i Path>,
     /// Notes on the selection for the user.
-    pub notes: Vec<String>,
+    pub(super) notes: Vec<String>,
 }
 
 /// Selects all files, or of a controller backup one motion task and the files named separately.
 ///
 /// # Errors
 /// The files belong to several backups.
-pub fn choose(input: &Input) -> anyhow::Result<Choice<'_>> {
+pub(super) fn choose(input: &Input) -> anyhow::Result<Choice<'_>> {
     let Some(first) = input.files.iter().find_map(|file| file.place.as_ref()) else {
         let files = input.files.iter().collect();
         return Ok(Choice { files, task: None, backup: None, notes: Vec::new() });

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
@@ -12,7 +13,7 @@ use serde_json::Value;
 
 use super::backup::motion_configuration;
 use super::choice;
-use super::input::{self, Input};
+use super::input::{self, Input, Unreadable};
 use super::streams::Streams;
 use crate::arm::effects;
 use crate::arm::kinematics::limits_ok;
@@ -22,77 +23,80 @@ use crate::retime::motion::{Options, Simulation};
 use crate::tool::config::{self, Config};
 use crate::tool::retrofit::Source;
 
+/// Upper limit of any number in an option: m, mm or degrees.
+const MAX_NUMBER: f64 = 1e6;
+
 /// Message for robots with another number of joints.
-pub const RUN_SIX_JOINTS: &str =
+pub(super) const RUN_SIX_JOINTS: &str =
     "RAPID programs are run for robots with 6: name another with --robot";
 
 /// A program, its robot, and what is known of its cell.
 #[derive(Debug, Default, Args)]
-pub struct CellArgs {
+pub(super) struct CellArgs {
     /// Module files, folders, .pgf programs or controller backups.
     #[arg(required = true)]
-    pub paths: Vec<PathBuf>,
+    pub(super) paths: Vec<PathBuf>,
 
     /// The robot: a name (joulepath robots list) or a robot file.
     #[arg(long, value_name = "NAME|FILE")]
-    pub robot: Option<String>,
+    pub(super) robot: Option<String>,
 
     /// Configuration; otherwise the nearest joulepath.toml above the program.
     #[arg(long, value_name = "FILE")]
-    pub config: Option<PathBuf>,
+    pub(super) config: Option<PathBuf>,
 
     /// The procedure that starts the program.
     #[arg(long)]
-    pub entry: Option<String>,
+    pub(super) entry: Option<String>,
 
     /// Where the robot stands at first, axes in degrees.
     #[arg(long, value_name = "DEG,…", allow_hyphen_values = true)]
-    pub start: Option<String>,
+    pub(super) start: Option<String>,
 
     /// When an input comes, such as diPart=2.5 (s after the start or the last wait for it).
     #[arg(long = "input", value_name = "SIGNAL=SECONDS")]
-    pub inputs: Vec<String>,
+    pub(super) inputs: Vec<String>,
 
     /// The level of an input that the program asks for, such as di1=1; otherwise 0.
     #[arg(long = "assume", value_name = "SIGNAL=LEVEL")]
-    pub levels: Vec<String>,
+    pub(super) levels: Vec<String>,
 
     /// No notes on standard error.
     #[arg(long, short)]
-    pub quiet: bool,
+    pub(super) quiet: bool,
 }
 
 /// Options of commands that run a program.
 #[derive(Debug, Default, Args)]
-pub struct ProgramArgs {
+pub(super) struct ProgramArgs {
     /// What is run, and where.
     #[command(flatten)]
-    pub cell: CellArgs,
+    pub(super) cell: CellArgs,
 
     /// Override of all speeds in %, as on the operator's panel.
     #[arg(long = "speed-override", value_name = "PERCENT", allow_negative_numbers = true)]
-    pub speed_override: Option<f64>,
+    pub(super) speed_override: Option<f64>,
 
     /// Take the robot's estimated numbers as they are, without plausible others and their intervals.
     #[arg(long = "point-estimate")]
-    pub point_estimate: bool,
+    pub(super) point_estimate: bool,
 
     /// How often the loop that never ends runs.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
-    pub passes: Option<u32>,
+    pub(super) passes: Option<u32>,
 
     /// End the simulation after this time, s.
     #[arg(long = "max-time", value_name = "SECONDS", allow_negative_numbers = true)]
-    pub max_time: Option<f64>,
+    pub(super) max_time: Option<f64>,
 
     /// How the result is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
-    pub format: Format,
+    pub(super) format: Format,
 }
 
 /// Forms of a result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum Format {
+pub(super) enum Format {
     /// For people.
     #[default]
     Text,
@@ -101,45 +105,45 @@ pub enum Format {
 }
 
 /// A program ready to run.
-pub struct Job {
+pub(super) struct Job {
     /// All files that were read.
-    pub input: Input,
+    pub(super) input: Input,
     /// The files of the program; their ids count from 0.
-    pub files: Vec<Source>,
+    pub(super) files: Vec<Source>,
     /// The existing streams of the program, if they are replaced.
-    pub streams: Streams,
+    pub(super) streams: Streams,
     /// The robot.
-    pub model: Model,
+    pub(super) model: Model,
     /// The configuration.
-    pub config: Config,
+    pub(super) config: Config,
     /// The routine that starts the program.
-    pub entry: String,
+    pub(super) entry: String,
     /// Options of the simulation.
-    pub options: Options,
+    pub(super) options: Options,
     /// The inputs of the options, as the user wrote them.
-    pub inputs: Vec<String>,
+    pub(super) inputs: Vec<String>,
 }
 
 impl Job {
     /// Whether existing streams of the program are replaced.
-    pub fn is_refreshed(&self) -> bool {
+    pub(super) fn is_refreshed(&self) -> bool {
         !self.streams.modules.is_empty()
     }
 
     /// The files that belong to other tasks.
-    pub fn others(&self) -> impl Iterator<Item = &SourceFile> {
+    pub(super) fn others(&self) -> impl Iterator<Item = &SourceFile> {
         let is_own = |path: &str| self.files.iter().any(|own| own.file.path == path);
         let all = self.input.files.iter().map(|file| &file.source);
         all.filter(move |source| !is_own(&source.path))
     }
 
     /// The source files for reports.
-    pub fn sources(&self) -> Vec<SourceFile> {
+    pub(super) fn sources(&self) -> Vec<SourceFile> {
         self.files.iter().map(|source| source.file.clone()).collect()
     }
 
     /// Notes on given inputs for which the simulated cycle does not wait.
-    pub fn unused_inputs(&self, simulation: &Simulation) -> Vec<String> {
+    pub(super) fn unused_inputs(&self, simulation: &Simulation) -> Vec<String> {
         let asked = &simulation.inputs_asked;
         let unused = self.inputs.iter().filter(|name| !asked.contains(&name.to_lowercase()));
         unused
@@ -154,24 +158,16 @@ impl Job {
 }
 
 /// Reads program, configuration and robot.
-///
-/// # Errors
-/// Missing or wrong input; the message states a remedy.
-pub fn prepare(program: &ProgramArgs) -> anyhow::Result<Job> {
+pub(super) fn prepare(program: &ProgramArgs) -> anyhow::Result<Job> {
     prepare_read(program, input::read(&program.cell.paths)?)
 }
 
 /// Prepares a program that was read.
-///
-/// # Errors
-/// See [`prepare`].
-pub fn prepare_read(program: &ProgramArgs, input: Input) -> anyhow::Result<Job> {
+pub(super) fn prepare_read(program: &ProgramArgs, input: Input) -> anyhow::Result<Job> {
     let args = &program.cell;
     note_unreadable(args.quiet, &input);
     let choice = choice::choose(&input)?;
-    for text in &choice.notes {
-        note(args.quiet, text);
-    }
+    notes(args.quiet, &choice.notes);
     for file in choice.files.iter().filter(|file| is_encoded_module(&file.source.bytes)) {
         let path = &file.source.path;
         note(args.quiet, &format!("'{path}' is an encoded module: what it declares is not known"));
@@ -179,7 +175,7 @@ pub fn prepare_read(program: &ProgramArgs, input: Input) -> anyhow::Result<Job> 
     let (config, folder) = configuration(args)?;
     let of_task = choice.task.and_then(|task| task.robot.as_deref());
     let name = robot_name(args, &config, &folder).or_else(|| of_task.map(str::to_owned));
-    let name = name.with_context(which_robot)?;
+    let name = name.with_context(robot_needed)?;
     let of_backup = args.robot.is_none() && config.robot.is_none();
     let model = effects::load_estimated(&name).map_err(|error| {
         if of_backup {
@@ -189,7 +185,7 @@ pub fn prepare_read(program: &ProgramArgs, input: Input) -> anyhow::Result<Job> 
         }
     })?;
     let model = match choice.backup.filter(|_| of_backup) {
-        Some(backup) => as_configured(backup, model, args.quiet),
+        Some(backup) => with_backup_configuration(backup, model, args.quiet),
         None => model,
     };
     if of_backup {
@@ -200,7 +196,7 @@ pub fn prepare_read(program: &ProgramArgs, input: Input) -> anyhow::Result<Job> 
     let entry = args.entry.clone().or_else(|| config.entry.clone()).or(of_task);
     let entry = entry.unwrap_or_else(|| "main".into());
     let (options, inputs) = simulation_options(args, &config, Some(&model))?;
-    let options = in_force(program, options)?;
+    let options = with_overrides(program, options)?;
     let files: Vec<Source> = choice
         .files
         .iter()
@@ -215,10 +211,7 @@ pub fn prepare_read(program: &ProgramArgs, input: Input) -> anyhow::Result<Job> 
 }
 
 /// The options of the simulation, and the inputs with stated times as the user wrote them.
-///
-/// # Errors
-/// An option is wrong.
-pub fn simulation_options(
+pub(super) fn simulation_options(
     args: &CellArgs,
     config: &Config,
     model: Option<&Model>,
@@ -255,7 +248,7 @@ pub fn simulation_options(
 }
 
 /// Adds speed override, passes and maximum time to the options.
-fn in_force(args: &ProgramArgs, options: Options) -> anyhow::Result<Options> {
+fn with_overrides(args: &ProgramArgs, options: Options) -> anyhow::Result<Options> {
     if let Some(percent) = args.speed_override.filter(|x| !(*x > 0.0 && *x <= 100.0)) {
         bail!("--speed-override {percent}: give a percentage above 0 and up to 100");
     }
@@ -271,7 +264,7 @@ fn in_force(args: &ProgramArgs, options: Options) -> anyhow::Result<Options> {
 }
 
 /// The robot with the configuration of its backup: ranges, base frame, arm loads.
-pub fn as_configured(backup: &Path, model: Model, quiet: bool) -> Model {
+pub(super) fn with_backup_configuration(backup: &Path, model: Model, quiet: bool) -> Model {
     let Some(path) = motion_configuration(backup) else { return model };
     let shown = path.display().to_string();
     let configured =
@@ -287,16 +280,13 @@ pub fn as_configured(backup: &Path, model: Model, quiet: bool) -> Model {
 }
 
 /// The robot from options and configuration, for commands without a program.
-///
-/// # Errors
-/// No robot is named, or it cannot be read.
-pub fn robot(args: &CellArgs) -> anyhow::Result<Model> {
+pub(super) fn robot(args: &CellArgs) -> anyhow::Result<Model> {
     let (config, folder) = configuration(args)?;
-    Ok(effects::load_estimated(&robot_name(args, &config, &folder).with_context(which_robot)?)?)
+    Ok(effects::load_estimated(&robot_name(args, &config, &folder).with_context(robot_needed)?)?)
 }
 
 /// The robot that options or configuration name.
-pub fn robot_name(args: &CellArgs, config: &Config, folder: &Path) -> Option<String> {
+pub(super) fn robot_name(args: &CellArgs, config: &Config, folder: &Path) -> Option<String> {
     let configured = || {
         let name = config.robot.as_ref()?;
         let beside = folder.join(name);
@@ -305,7 +295,7 @@ pub fn robot_name(args: &CellArgs, config: &Config, folder: &Path) -> Option<Str
     args.robot.clone().or_else(configured)
 }
 
-fn which_robot() -> String {
+fn robot_needed() -> String {
     format!(
         "which robot? name it with --robot NAME (joulepath robots list shows the known ones), \
          --robot FILE.toml, or robot = \"…\" in {}",
@@ -314,18 +304,15 @@ fn which_robot() -> String {
 }
 
 /// The configuration, and its folder.
-///
-/// # Errors
-/// It cannot be read.
-pub fn configuration(args: &CellArgs) -> anyhow::Result<(Config, PathBuf)> {
-    let unreadable = |path: &Path, error: &std::io::Error| config::ConfigError::Unreadable {
-        path: path.to_string_lossy().into_owned(),
-        reason: error.to_string(),
-    };
+pub(super) fn configuration(args: &CellArgs) -> anyhow::Result<(Config, PathBuf)> {
     let read = |path: &Path| -> anyhow::Result<(Config, PathBuf)> {
-        let text = fs::read_to_string(path).map_err(|error| unreadable(path, &error))?;
+        let shown = path.to_string_lossy().into_owned();
+        let text = fs::read_to_string(path).map_err(|error| config::ConfigError::Unreadable {
+            path: shown.clone(),
+            reason: error.to_string(),
+        })?;
         let folder = path.parent().map_or_else(PathBuf::new, Path::to_path_buf);
-        Ok((config::parse(&path.to_string_lossy(), &text)?, folder))
+        Ok((config::parse(&shown, &text)?, folder))
     };
     if let Some(path) = &args.config {
         return read(path);
@@ -369,28 +356,25 @@ fn input_time(text: &str) -> anyhow::Result<(String, f64)> {
 }
 
 /// Six axis positions \[rad\] from an option in degrees.
-///
-/// # Errors
-/// The text does not consist of six numbers.
-pub fn six_degrees(option: &str, text: &str) -> anyhow::Result<[f64; 6]> {
-    let wrong = || {
-        anyhow::anyhow!(
-            "{option} {text}: give six axis positions in degrees, such as 0,-12,14,0,90,0"
-        )
-    };
+pub(super) fn six_degrees(option: &str, text: &str) -> anyhow::Result<[f64; 6]> {
+    let degrees = numbers(option, text, "six axis positions in degrees, such as 0,-12,14,0,90,0")?;
+    Ok(degrees.map(f64::to_radians))
+}
+
+/// Numbers of an option, separated by commas; `help` ends the message.
+pub(super) fn numbers<const N: usize>(
+    option: &str,
+    text: &str,
+    help: &str,
+) -> anyhow::Result<[f64; N]> {
+    let wrong = || format!("{option} {text}: give {help}");
     let values: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
-    let values: [f64; 6] = values.map_err(|_| wrong())?.try_into().map_err(|_| wrong())?;
-    if values.iter().any(|x: &f64| !x.is_finite()) {
-        return Err(wrong());
-    }
-    Ok(values.map(f64::to_radians))
+    let values = values.ok().filter(|x| x.iter().all(|x: &f64| x.abs() < MAX_NUMBER));
+    values.and_then(|x| <[f64; N]>::try_from(x).ok()).with_context(wrong)
 }
 
 /// Refuses a robot without exactly six joints; `way_out` ends the message.
-///
-/// # Errors
-/// The robot has more or fewer joints.
-pub fn require_six_joints(model: &Model, way_out: &str) -> anyhow::Result<()> {
+pub(super) fn require_six_joints(model: &Model, way_out: &str) -> anyhow::Result<()> {
     if model.dof != 6 {
         bail!("{} has {} joints; {way_out}", model.name, model.dof);
     }
@@ -398,37 +382,48 @@ pub fn require_six_joints(model: &Model, way_out: &str) -> anyhow::Result<()> {
 }
 
 /// A progress bar on standard error; a spinner without `length`.
-pub fn progress(quiet: bool, length: Option<u64>) -> ProgressBar {
+pub(super) fn progress(quiet: bool, length: Option<u64>) -> ProgressBar {
     let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
     ProgressBar::with_draw_target(length, target)
 }
 
-/// Prints a result on standard output.
-///
-/// # Errors
-/// Standard output cannot be written.
-pub fn print(
+/// Prints a result on standard output; the exit code is that of a success.
+pub(super) fn print(
     format: Format,
     json: impl FnOnce() -> Value,
     text: impl FnOnce() -> String,
-) -> anyhow::Result<()> {
+) -> anyhow::Result<ExitCode> {
     let mut out = std::io::stdout().lock();
     match format {
         Format::Json => writeln!(out, "{:#}", json())?,
         Format::Text => out.write_all(text().as_bytes())?,
     }
-    Ok(())
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Notes on files that could not be read.
-pub fn note_unreadable(quiet: bool, input: &Input) {
-    for unreadable in &input.unreadable {
-        note(quiet, &format!("skipped '{}': {}", unreadable.path, unreadable.reason));
+pub(super) fn note_unreadable(quiet: bool, input: &Input) {
+    let skipped = |it: &Unreadable| format!("skipped '{}': {}", it.path, it.reason);
+    notes(quiet, input.unreadable.iter().map(skipped));
+}
+
+/// Notes on standard error, unless `quiet`.
+pub(super) fn notes(quiet: bool, texts: impl IntoIterator<Item = impl AsRef<str>>) {
+    for text in texts {
+        note(quiet, text.as_ref());
+    }
+}
+
+/// A note on standard error unless it is among `known`, to which it is added.
+pub(super) fn note_once(quiet: bool, known: &mut Vec<String>, text: String) {
+    if !known.contains(&text) {
+        note(quiet, &text);
+        known.push(text);
     }
 }
 
 /// A note on standard error, unless `quiet`.
-pub fn note(quiet: bool, text: &str) {
+pub(super) fn note(quiet: bool, text: &str) {
     if !quiet {
         writeln!(std::io::stderr(), "note: {text}").unwrap_or_default();
     }

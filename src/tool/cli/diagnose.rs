@@ -13,8 +13,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
 
 use super::common::{self, Format};
-use super::logs::{Read, Reader, Ready, held_out, read_all};
-use super::output;
+use super::logs::{PreparedLog, RawLog, Reader, held_out, read_all};
+use super::output::{self, is_same_file};
 use crate::arm::effects::{self, ALL, Effect};
 use crate::arm::robot::{Model, Use, nearest, ready, to_toml};
 use crate::gap::{
@@ -26,12 +26,13 @@ use crate::learn::log::{Channel, ColumnMap};
 use crate::tool::report::diagnose as report;
 use crate::tool::report::html::diagnose_report;
 
-/// Where a model and logs of its robot part, which effect it is, and how far the gap shrinks.
+/// Find where a model differs from logs of its robot, which effect explains it, and how far the gap
+/// shrinks.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: joulepath diagnose --robot nominal.toml --log run1.csv run2.csv --heldout other.csv --out model.toml"
 )]
-pub struct DiagnoseArgs {
+pub(super) struct DiagnoseArgs {
     /// The robot as it is believed: a name (joulepath robots list) or a robot file.
     #[arg(long, value_name = "NAME|FILE")]
     robot: String,
@@ -89,7 +90,7 @@ pub struct DiagnoseArgs {
 }
 
 /// Cut-off frequency of the filter for logged program runs \[Hz\].
-const OF_RUNS: f64 = 10.0;
+const RUN_CUTOFF_HZ: f64 = 10.0;
 /// Redraw interval of the progress bar.
 const TICK: Duration = Duration::from_millis(200);
 
@@ -104,22 +105,19 @@ enum TrustArg {
     Unknown,
 }
 
-/// Runs the command.
-///
-/// # Errors
-/// A log or a robot that cannot be used, or output that cannot be written.
-pub fn run(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
-    let (found, basis) = diagnosed(args)?;
+pub(super) fn run(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
+    let (found, basis) = run_diagnosis(args)?;
     common::print(args.format, || report::json(&found, &basis), || report::text(&found, &basis))?;
     Ok(if found.verdict == Verdict::NoGap { ExitCode::SUCCESS } else { ExitCode::from(1) })
 }
 
 /// The JSON of a case of `blind generate`, diagnosed without some effects; without omissions, the
 /// model is written too.
-///
-/// # Errors
-/// See [`run`].
-pub fn of_case(case: &Path, options: &Value, without: &[&str]) -> anyhow::Result<Value> {
+pub(super) fn diagnose_case(
+    case: &Path,
+    options: &Value,
+    without: &[&str],
+) -> anyhow::Result<Value> {
     let text = |key: &str| options.get(key).and_then(Value::as_str);
     let baseline = case.join("baseline-1.csv");
     let args = DiagnoseArgs {
@@ -137,16 +135,13 @@ pub fn of_case(case: &Path, options: &Value, without: &[&str]) -> anyhow::Result
         format: Format::Json,
         quiet: true,
     };
-    let (found, basis) = diagnosed(&args)?;
+    let (found, basis) = run_diagnosis(&args)?;
     Ok(report::json(&found, &basis))
 }
 
 /// Refuses outputs that overwrite an input, and logs that are given twice or in two roles.
 fn check_paths(args: &DiagnoseArgs) -> anyhow::Result<()> {
-    let real = |path: &Path| path.canonicalize().ok();
-    let within = |path: &Path, files: &[PathBuf]| {
-        real(path).is_some_and(|path| files.iter().any(|file| real(file).as_ref() == Some(&path)))
-    };
+    let within = |path: &Path, files: &[PathBuf]| files.iter().any(|it| is_same_file(it, path));
     let robot = vec![PathBuf::from(&args.robot)];
     let read = [&robot, &args.log, &args.heldout, &args.baseline];
     for (option, written) in [("--out", &args.out), ("--report", &args.report)] {
@@ -157,7 +152,7 @@ fn check_paths(args: &DiagnoseArgs) -> anyhow::Result<()> {
         }
     }
     if let (Some(model), Some(page)) = (&args.out, &args.report)
-        && (model == page || real(model).is_some_and(|model| Some(model) == real(page)))
+        && (model == page || is_same_file(model, page))
     {
         bail!("--report {}: --out writes this file; give another name", page.display());
     }
@@ -178,7 +173,7 @@ fn check_paths(args: &DiagnoseArgs) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> {
+fn run_diagnosis(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> {
     check_paths(args)?;
     let model = effects::load(&args.robot)?;
     ready(&model, Use::Predict)?;
@@ -226,7 +221,8 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
         (wanted.clone(), baseline.as_slice())
     };
     let settings = Settings { trust, effects: of_torque };
-    let mut found = of_logs(&model, [&train, &held, compared], &settings, &progress(args.quiet));
+    let mut found =
+        diagnose_with_progress(&model, [&train, &held, compared], &settings, &progress(args.quiet));
     basis.notes.extend(baseline_notes(&found, compared));
     if let Some(of) = &of_power {
         found.add_power(of);
@@ -246,16 +242,14 @@ fn diagnosed(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> 
     }
     let graded = if held.is_empty() { &train } else { &held };
     write(args, &model, graded, &found, &mut basis)?;
-    for text in &basis.notes[shown..] {
-        common::note(args.quiet, text);
-    }
+    common::notes(args.quiet, &basis.notes[shown..]);
     Ok((found, basis))
 }
 
 struct Data {
-    train: Vec<Ready>,
-    held: Vec<Ready>,
-    baseline: Vec<Ready>,
+    train: Vec<PreparedLog>,
+    held: Vec<PreparedLog>,
+    baseline: Vec<PreparedLog>,
     /// The kind of held-out data: `file`, `trajectory` or `cycles`.
     heldout: &'static str,
     notes: Vec<String>,
@@ -268,12 +262,12 @@ fn read_data(
     trust: Trust,
 ) -> anyhow::Result<Data> {
     let mut reader = Reader { model, quiet: args.quiet, notes: Vec::new() };
-    let mut read = |paths: &[PathBuf]| -> anyhow::Result<Vec<Ready>> {
-        let one = |read: Read| {
+    let mut read = |paths: &[PathBuf]| -> anyhow::Result<Vec<PreparedLog>> {
+        let one = |read: RawLog| {
             // Repetitions of a program are never equal to the millisecond.
             let is_run = read.log.column(Channel::Command).is_some();
-            let cutoff = is_run.then_some(OF_RUNS);
-            reader.ready(read, Hints { period: args.period, cutoff })
+            let cutoff = is_run.then_some(RUN_CUTOFF_HZ);
+            reader.prepared(read, Hints { period: args.period, cutoff })
         };
         read_all(paths, map, model)?.into_iter().map(one).collect()
     };
@@ -309,12 +303,12 @@ fn read_data(
     Ok(Data { train, held, baseline, heldout, notes: reader.notes })
 }
 
-fn records<'a>(model: &'a Model, logs: &[Ready]) -> Vec<Record<'a>> {
+fn records<'a>(model: &'a Model, logs: &[PreparedLog]) -> Vec<Record<'a>> {
     logs.iter().flat_map(|log| Record::all(model, &log.samples)).collect()
 }
 
 /// Effects that the baseline already shows, or why it is not compared.
-fn baseline_notes(found: &Diagnosis, compared: &[Ready]) -> Vec<String> {
+fn baseline_notes(found: &Diagnosis, compared: &[PreparedLog]) -> Vec<String> {
     let known = found.before.iter().flatten();
     let mut notes: Vec<String> =
         known.map(|of| format!("{}: in the baseline already", report::called(of))).collect();
@@ -330,7 +324,7 @@ fn baseline_notes(found: &Diagnosis, compared: &[Ready]) -> Vec<String> {
 fn write(
     args: &DiagnoseArgs,
     model: &Model,
-    graded: &[Ready],
+    graded: &[PreparedLog],
     found: &Diagnosis,
     basis: &mut report::Basis,
 ) -> anyhow::Result<()> {
@@ -347,9 +341,9 @@ fn write(
     Ok(())
 }
 
-fn of_logs(
+fn diagnose_with_progress(
     model: &Model,
-    [train, held, before]: [&[Ready]; 3],
+    [train, held, before]: [&[PreparedLog]; 3],
     settings: &Settings,
     progress: &ProgressBar,
 ) -> Diagnosis {

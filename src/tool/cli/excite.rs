@@ -5,16 +5,16 @@ mod args;
 mod motion;
 mod outputs;
 
-pub use args::ExciteArgs;
+pub(super) use args::ExciteArgs;
 
 use std::process::ExitCode;
 
 use anyhow::bail;
 use nalgebra::Vector3;
 
-use self::area::{keep_out, numbers, plane};
-use self::args::{Spacing, Variant, WIDEST};
-use self::motion::{FINE, along_plateaus, designed};
+use self::area::{keep_out, plane};
+use self::args::{MAX_SPACING, Spacing, Variant};
+use self::motion::{TABLE_STEP, designed_motion, plateau_motion};
 use self::outputs::{json, text, write};
 use super::common;
 use super::load;
@@ -24,36 +24,29 @@ use crate::arm::robot::Model;
 use crate::learn::excite::{Design, Focus, Plateaus, friction_plateaus, wrist_plateaus};
 
 /// Range of base frequencies that can be designed and recorded \[Hz\].
-const SLOWEST: f64 = 0.01;
-const FASTEST: f64 = 10.0;
+const MIN_FREQUENCY: f64 = 0.01;
+const MAX_FREQUENCY: f64 = 10.0;
 /// Minimum share of the speed limits: joints stick at lower speeds.
-const LEAST_SPEED: f64 = 0.001;
+const MIN_SPEED_SHARE: f64 = 0.001;
 /// Maximum number of repetitions.
-const MOST_CYCLES: usize = 10_000;
+const MAX_CYCLES: usize = 10_000;
 /// Minimum number of points per period of the highest harmonic.
-const LEAST_POINTS: f64 = 6.0;
+const MIN_POINTS: f64 = 6.0;
 
-/// Runs the command.
-///
-/// # Errors
-/// A robot without limits, invalid options, or output that cannot be written.
-pub fn run(args: &ExciteArgs) -> anyhow::Result<ExitCode> {
+pub(super) fn run(args: &ExciteArgs) -> anyhow::Result<ExitCode> {
     let model = effects::load_estimated(&args.robot)?;
     common::require_six_joints(&model, "RAPID is written for robots with 6")?;
     let settings = settings(args, &model)?;
-    for text in model.assumed() {
-        common::note(args.quiet, &text);
-    }
+    common::notes(args.quiet, model.assumed());
     let body = Body::new(&model, settings.tool, &settings.obstacles);
-    let plateaus = |found: Plateaus| along_plateaus(args, &model, &settings, &body, &found);
+    let plateaus = |found: Plateaus| plateau_motion(args, &model, &settings, &body, &found);
     let motion = match args.variant {
         Variant::Friction => plateaus(friction_plateaus(&model, &body, args.speed_share)?),
         Variant::Wrist => plateaus(wrist_plateaus(&model, &body, args.speed_share)?),
-        _ => designed(args, &model, &settings, &body)?,
+        _ => designed_motion(args, &model, &settings, &body)?,
     };
     let outputs = write(args, &model, &settings.load, &motion)?;
-    common::print(args.format, || json(&motion, &outputs), || text(&motion, &outputs))?;
-    Ok(ExitCode::SUCCESS)
+    common::print(args.format, || json(&motion, &outputs), || text(&motion, &outputs))
 }
 
 fn settings(args: &ExciteArgs, model: &Model) -> anyhow::Result<Design> {
@@ -65,21 +58,21 @@ fn settings(args: &ExciteArgs, model: &Model) -> anyhow::Result<Design> {
     };
     positive("--base-frequency", args.base_frequency)?;
     positive("--speed-share", args.speed_share)?;
-    if !(SLOWEST..=FASTEST).contains(&args.base_frequency) {
+    if !(MIN_FREQUENCY..=MAX_FREQUENCY).contains(&args.base_frequency) {
         bail!(
-            "--base-frequency {}: a repetition would last {:.3} s; give {SLOWEST} to {FASTEST} Hz",
+            "--base-frequency {}: a repetition would last {:.3} s; give {MIN_FREQUENCY} to {MAX_FREQUENCY} Hz",
             args.base_frequency,
             1.0 / args.base_frequency
         );
     }
-    if !(LEAST_SPEED..=1.0).contains(&args.speed_share) {
+    if !(MIN_SPEED_SHARE..=1.0).contains(&args.speed_share) {
         bail!(
-            "--speed-share {}: give a share of the speed limits, from {LEAST_SPEED} to 1",
+            "--speed-share {}: give a share of the speed limits, from {MIN_SPEED_SHARE} to 1",
             args.speed_share
         );
     }
-    if !(1..=MOST_CYCLES).contains(&args.cycles) {
-        bail!("--cycles {}: give 1 to {MOST_CYCLES}", args.cycles);
+    if !(1..=MAX_CYCLES).contains(&args.cycles) {
+        bail!("--cycles {}: give 1 to {MAX_CYCLES}", args.cycles);
     }
     let mut harmonics = args.harmonics.clone();
     harmonics.sort_unstable();
@@ -91,25 +84,22 @@ fn settings(args: &ExciteArgs, model: &Model) -> anyhow::Result<Design> {
     }
     if let Spacing::Seconds(spacing) = args.spacing {
         let fastest = args.base_frequency * harmonics[harmonics.len() - 1] as f64;
-        let widest = WIDEST.min(1.0 / (LEAST_POINTS * fastest));
-        if !(FINE..=widest).contains(&spacing) {
+        let widest = MAX_SPACING.min(1.0 / (MIN_POINTS * fastest));
+        if !(TABLE_STEP..=widest).contains(&spacing) {
             bail!(
-                "--spacing {spacing}: points have to be {FINE} to {widest:.4} s apart, {LEAST_POINTS} \
+                "--spacing {spacing}: points have to be {TABLE_STEP} to {widest:.4} s apart, {MIN_POINTS} \
                  or more in a period of the fastest harmonic"
             );
         }
     }
-    let mut obstacles = Vec::new();
-    for text in &args.planes {
-        obstacles.push(Obstacle::Plane(plane(text)?));
-    }
-    for text in &args.boxes {
-        obstacles.push(Obstacle::KeepOut(keep_out(text)?));
-    }
+    let planes = args.planes.iter().map(|text| Ok(Obstacle::Plane(plane(text)?)));
+    let boxes = args.boxes.iter().map(|text| Ok(Obstacle::KeepOut(keep_out(text)?)));
+    let mut obstacles: Vec<Obstacle> = planes.chain(boxes).collect::<anyhow::Result<_>>()?;
     obstacles.extend(floor(model));
     let tool = match &args.tool {
         Some(text) => {
-            let [x, y, z] = numbers("--tool", text, "three lengths in mm, such as 0,0,250")?;
+            let [x, y, z] =
+                common::numbers("--tool", text, "three lengths in mm, such as 0,0,250")?;
             Vector3::new(x, y, z) * 1e-3
         }
         None => Vector3::zeros(),

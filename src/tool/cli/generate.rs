@@ -28,7 +28,7 @@ use crate::tool::generate::{Form, Generated, Settings, generate, table};
         or mm in mm/s and mm.\n\n\
         Example: joulepath generate trajectory.csv --robot IRB1600-10/1.45 --out generated"
 )]
-pub struct GenerateArgs {
+pub(super) struct GenerateArgs {
     #[command(flatten)]
     program: ProgramArgs,
 
@@ -58,11 +58,7 @@ enum FormArg {
     Egm,
 }
 
-/// Runs the command.
-///
-/// # Errors
-/// Unusable input, a motion that the robot cannot do, or output that cannot be written.
-pub fn run(args: &GenerateArgs) -> anyhow::Result<ExitCode> {
+pub(super) fn run(args: &GenerateArgs) -> anyhow::Result<ExitCode> {
     let [path] = args.program.cell.paths.as_slice() else { bail!("give one CSV file") };
     let bytes = std::fs::read(path)
         .with_context(|| format!("cannot read '{}'; check the path", path.display()))?;
@@ -80,23 +76,16 @@ pub fn run(args: &GenerateArgs) -> anyhow::Result<ExitCode> {
     };
     let generated =
         generate(&model, &points, &settings).with_context(|| path.display().to_string())?;
-    for text in generated.notes.iter().chain(&model.assumed()) {
-        common::note(args.program.cell.quiet, text);
-    }
-    let files: Vec<(PathBuf, &[u8])> = generated
-        .outputs
-        .iter()
-        .map(|file| (PathBuf::from(&file.path), file.bytes.as_slice()))
-        .collect();
-    output::write_folder(&args.out, &files)?;
+    common::notes(args.program.cell.quiet, generated.notes.iter().chain(&model.assumed()));
+    let files = &generated.outputs;
+    output::write_folder(&args.out, files.iter().map(|file| (&file.path, &file.bytes)))?;
     let written: Vec<String> =
-        files.iter().map(|(path, _)| args.out.join(path).display().to_string()).collect();
+        files.iter().map(|file| args.out.join(&file.path).display().to_string()).collect();
     common::print(
         args.program.format,
         || json(&model.name, &generated, &written),
         || text(&generated, &written),
-    )?;
-    Ok(ExitCode::SUCCESS)
+    )
 }
 
 fn json(robot: &str, generated: &Generated, written: &[String]) -> serde_json::Value {

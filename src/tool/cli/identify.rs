@@ -7,8 +7,9 @@ use std::process::ExitCode;
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
 
-use super::logs::{Reader, Ready, read_all};
-use super::{common, output};
+use super::common::{self, note_once};
+use super::logs::{PreparedLog, Reader, read_all};
+use super::output;
 use crate::arm::effects;
 use crate::arm::robot::Model;
 use crate::learn::identify::{
@@ -24,7 +25,7 @@ use crate::tool::report::identify::{self as report, LogRecord};
 #[command(
     after_help = "Example: joulepath identify --robot IRB1600-10/1.45 --log run1.csv run2.csv --validate other.csv --out model.toml"
 )]
-pub struct IdentifyArgs {
+pub(super) struct IdentifyArgs {
     /// The robot: a name (joulepath robots list) or a robot file, TOML or URDF.
     #[arg(long, value_name = "NAME|FILE")]
     robot: String,
@@ -121,11 +122,7 @@ fn date(text: &str) -> Result<String, String> {
     if (1..=last).contains(&day) { Ok(text.to_owned()) } else { Err(wrong()) }
 }
 
-/// Runs the command.
-///
-/// # Errors
-/// A log or a robot that cannot be used, or output that cannot be written.
-pub fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
+pub(super) fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
     let model = effects::load(&args.robot)?;
     let map = ColumnMap::parse(&args.map)?;
     if let Some(period) = args.period.filter(|period| !PERIODS.contains(period)) {
@@ -145,20 +142,24 @@ pub fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
             "the wrist is coupled: motor 6 turns {coupling:.3} times with axis 5; the robot did not \
              state it"
         );
-        tell(args, &mut basis, text);
+        note_once(args.quiet, &mut basis.notes, text);
     }
     if found.quality.grade == Grade::None {
         bail!(
-            "no robot that can be has such torques ({}): check their signs, their time and that \
-             robot and log are the same",
+            "no physically possible robot has these torques ({}): check their signs and their time, \
+             and that the log is of this robot",
             found.quality.sentence()
         );
     }
     if found.quality.grade == Grade::Poor {
-        tell(args, &mut basis, format!("the model is {}", found.quality.sentence()));
+        note_once(
+            args.quiet,
+            &mut basis.notes,
+            format!("the model is {}", found.quality.sentence()),
+        );
     }
     for text in doubts(&found) {
-        tell(args, &mut basis, text);
+        note_once(args.quiet, &mut basis.notes, text);
     }
     if args.descent {
         basis.descent = by_descent(&model, &found);
@@ -196,7 +197,7 @@ fn read_data(
     let mut reader = Reader { model, quiet: args.quiet, notes: Vec::new() };
     let mut training = Vec::new();
     for read in read_all(&args.log, map, model)? {
-        training.push(reader.ready(read, hints)?);
+        training.push(reader.prepared(read, hints)?);
     }
     // One filter for all logs: compared data need the same bandwidth.
     let cutoff = training.iter().find_map(|ready| match ready.samples.source {
@@ -205,21 +206,21 @@ fn read_data(
     });
     let mut validation = Vec::new();
     for read in read_all(&args.validate, map, model)? {
-        let ready = reader.ready(read, Hints { cutoff, ..hints })?;
+        let ready = reader.prepared(read, Hints { cutoff, ..hints })?;
         basis.validation.push(ready.record);
         validation.push(ready.samples);
     }
     basis.notes = reader.notes;
     basis.logs = training.iter().map(|ready| ready.record.clone()).collect();
     for text in repeated(&basis.logs, &basis.validation) {
-        tell(args, basis, text);
+        note_once(args.quiet, &mut basis.notes, text);
     }
     basis.torque = training.first().map_or_else(String::new, |ready| ready.origin.clone());
     let weight = training.iter().find_map(|ready| ready.weight);
     let samples = joined(training)?;
     for joint in &samples.resting {
         let text = format!("joint {} does not move: nothing of it is determined", joint + 1);
-        tell(args, basis, text);
+        note_once(args.quiet, &mut basis.notes, text);
     }
     for (joint, share) in samples.share_at_limits().into_iter().enumerate() {
         if share > 0.0 {
@@ -229,7 +230,7 @@ fn read_data(
                 joint + 1,
                 100.0 * share
             );
-            tell(args, basis, text);
+            note_once(args.quiet, &mut basis.notes, text);
         }
     }
     Ok(Data { samples, validation, weight })
@@ -279,21 +280,13 @@ fn traces(found: &Identified, model: &Model, samples: &Samples, title: String) -
     traces
 }
 
-fn tell(args: &IdentifyArgs, basis: &mut report::Basis, text: String) {
-    if basis.notes.contains(&text) {
-        return;
-    }
-    common::note(args.quiet, &text);
-    basis.notes.push(text);
-}
-
 /// Maximum relative residual of a good model.
-const MISSED: f64 = 0.35;
+const MAX_RELATIVE_RESIDUAL: f64 = 0.35;
 /// Relative residual that counts as zero.
-const NOTHING: f64 = 1e-3;
+const NEGLIGIBLE_RESIDUAL: f64 = 1e-3;
 
 /// Maximum plausible mass of a link \[kg\].
-const HEAVIEST: f64 = 1500.0;
+const MAX_LINK_MASS: f64 = 1500.0;
 
 /// Warnings on the quality of the result.
 fn doubts(found: &Identified) -> Vec<String> {
@@ -304,7 +297,7 @@ fn doubts(found: &Identified) -> Vec<String> {
     };
     for (joint, (with, without)) in with.iter().zip(without).enumerate() {
         let relative = found.training.relative[joint];
-        if relative > MISSED {
+        if relative > MAX_RELATIVE_RESIDUAL {
             texts.push(format!(
                 "joint {}: the model misses {:.0} % of the torque: are the columns of one time and \
                  one robot?",
@@ -312,7 +305,7 @@ fn doubts(found: &Identified) -> Vec<String> {
                 100.0 * relative
             ));
         }
-        if with / without > 1.02 && relative > NOTHING {
+        if with / without > 1.02 && relative > NEGLIGIBLE_RESIDUAL {
             texts.push(format!(
                 "joint {}: residuals of the physically consistent model are {:.1} % larger than \
                  those of the free fit",
@@ -328,7 +321,7 @@ fn doubts(found: &Identified) -> Vec<String> {
         ));
     }
     for (k, link) in found.model.links.iter().enumerate() {
-        if link.mass > HEAVIEST {
+        if link.mass > MAX_LINK_MASS {
             texts.push(format!(
                 "link {}: {:.0} kg are no arm's: the motion does not tell masses, only what torques \
                  need of them; start from a robot file with the masses of the drawings",
@@ -374,7 +367,7 @@ fn repeated(training: &[LogRecord], validation: &[LogRecord]) -> Vec<String> {
 const PERIODS: RangeInclusive<f64> = 1e-3..=1e5;
 
 /// Concatenates the samples of several logs.
-fn joined(logs: Vec<Ready>) -> anyhow::Result<Samples> {
+fn joined(logs: Vec<PreparedLog>) -> anyhow::Result<Samples> {
     let mut all = logs.into_iter();
     let Some(first) = all.next() else { bail!("--log: give a log") };
     let mut samples = first.samples;
@@ -411,13 +404,8 @@ fn write(
         let text = report::toml(found, basis);
         // The output must be a valid robot file.
         effects::from_toml(&path.display().to_string(), &text)
-            .context("the identified numbers are no robot file; nothing was written")?;
+            .context("the identified numbers make no valid robot file; nothing was written")?;
         output::write(path, text.as_bytes())?;
     }
-    common::print(
-        args.format,
-        || report::json(found, basis, &path),
-        || report::text(found, basis),
-    )?;
-    Ok(ExitCode::SUCCESS)
+    common::print(args.format, || report::json(found, basis, &path), || report::text(found, basis))
 }

@@ -6,7 +6,7 @@
 
 mod search;
 
-pub use search::{InputError, Unreadable};
+pub(super) use search::{InputError, Unreadable};
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -14,69 +14,69 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use self::search::{Found, below, bytes_of, find, shown, tell_apart};
+use self::search::{FoundFile, bytes_of, find, make_distinct, relative_text, shown};
 use super::backup::{self, Backup};
 use crate::rapid::text::{FileId, SourceFile};
 
 /// A file that was read.
 #[derive(Clone, Debug)]
-pub struct InputFile {
+pub(super) struct InputFile {
     /// Its bytes; its path is the given one, joined with `/`.
-    pub source: SourceFile,
+    pub(super) source: SourceFile,
     /// Its path relative to the input, with `/`; also its path below `--out`.
-    pub relative: String,
+    pub(super) relative: String,
     /// Its place in a controller backup, if it is a module of a task.
-    pub place: Option<Place>,
+    pub(super) place: Option<Place>,
     /// Whether the command line names it, directly or by a program file.
-    pub named: bool,
+    pub(super) named: bool,
 }
 
 /// A place in a controller backup.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
+pub(super) struct Place {
     /// Index of the backup in [`Input::backups`].
-    pub backup: usize,
+    pub(super) backup: usize,
     /// The task's folder, `TASK1` ….
-    pub folder: String,
+    pub(super) folder: String,
 }
 
 /// A program file that was read.
 #[derive(Clone, Debug)]
-pub struct Listing {
+pub(super) struct Listing {
     /// Its path, joined with `/`.
-    pub path: String,
+    pub(super) path: String,
     /// Its path relative to the input, with `/`.
-    pub relative: String,
+    pub(super) relative: String,
     /// Its bytes.
-    pub bytes: Vec<u8>,
+    pub(super) bytes: Vec<u8>,
     /// The paths of the modules that it lists.
-    pub modules: Vec<String>,
+    pub(super) modules: Vec<String>,
 }
 
 /// The file of a controller backup that lists its modules.
 #[derive(Clone, Debug)]
-pub struct Information {
+pub(super) struct Information {
     /// Its path, joined with `/`.
-    pub path: String,
+    pub(super) path: String,
     /// Its path relative to the backup, with `/`.
-    pub relative: String,
+    pub(super) relative: String,
     /// Its bytes.
-    pub bytes: Vec<u8>,
+    pub(super) bytes: Vec<u8>,
 }
 
 /// The input of the command line, sorted by path within each argument.
 #[derive(Clone, Debug, Default)]
-pub struct Input {
+pub(super) struct Input {
     /// The files; their ids count from 0 in this order.
-    pub files: Vec<InputFile>,
+    pub(super) files: Vec<InputFile>,
     /// The program files that list some of them.
-    pub listings: Vec<Listing>,
+    pub(super) listings: Vec<Listing>,
     /// Files and folders that could not be read.
-    pub unreadable: Vec<Unreadable>,
+    pub(super) unreadable: Vec<Unreadable>,
     /// The controller backups of the files, with their folders.
-    pub backups: Vec<(PathBuf, Backup)>,
+    pub(super) backups: Vec<(PathBuf, Backup)>,
     /// The module lists of these backups.
-    pub information: Vec<Information>,
+    pub(super) information: Vec<Information>,
 }
 
 /// Reads the files of `paths`. A file named twice is read once.
@@ -84,16 +84,16 @@ pub struct Input {
 /// # Errors
 /// Nothing can be read (the error concerns the first path), or a `.pgf` lists files outside its
 /// folder. If some files can be read, the others are listed in [`Input::unreadable`].
-pub fn read(paths: &[PathBuf]) -> Result<Input, InputError> {
+pub(super) fn read(paths: &[PathBuf]) -> Result<Input, InputError> {
     let mut first_error = None;
     let mut input = Input::default();
-    let mut found: Vec<Found> = Vec::new();
+    let mut found: Vec<FoundFile> = Vec::new();
     let mut seen = BTreeSet::new();
     for path in paths {
         match find(path, &mut input.unreadable) {
             Ok(files) => {
                 let place =
-                    |file: &Found| fs::canonicalize(&file.path).unwrap_or(file.path.clone());
+                    |file: &FoundFile| fs::canonicalize(&file.path).unwrap_or(file.path.clone());
                 found.extend(files.into_iter().filter(|file| seen.insert(place(file))));
             }
             Err(error @ InputError::Outside { .. }) => return Err(error),
@@ -103,8 +103,8 @@ pub fn read(paths: &[PathBuf]) -> Result<Input, InputError> {
             }
         }
     }
-    tell_apart(&mut found);
-    let (listings, found): (Vec<Found>, Vec<Found>) =
+    make_distinct(&mut found);
+    let (listings, found): (Vec<FoundFile>, Vec<FoundFile>) =
         found.into_iter().partition(|file| file.modules.is_some());
     for file in listings {
         if let (Some(modules), Ok(bytes)) = (file.modules, bytes_of(&file.path)) {
@@ -122,16 +122,13 @@ pub fn read(paths: &[PathBuf]) -> Result<Input, InputError> {
                 let id = FileId(input.files.len() as u32);
                 let place = place(&file.path, &mut input);
                 let source = SourceFile { id, ..source };
-                let Found { relative, named, .. } = file;
+                let FoundFile { relative, named, .. } = file;
                 input.files.push(InputFile { source, relative, place, named });
             }
             Err(reason) => {
-                let path = shown(&file.path);
-                first_error.get_or_insert_with(|| InputError::Unreadable {
-                    path: path.clone(),
-                    reason: reason.clone(),
-                });
-                input.unreadable.push(Unreadable { path, reason });
+                let unreadable = Unreadable { path: shown(&file.path), reason };
+                first_error.get_or_insert_with(|| InputError::Unreadable(unreadable.clone()));
+                input.unreadable.push(unreadable);
             }
         }
     }
@@ -158,7 +155,7 @@ fn place(path: &Path, input: &mut Input) -> Option<Place> {
 fn information(root: &Path) -> Option<Information> {
     let path = backup::information(root)?;
     let bytes = bytes_of(&path).ok()?;
-    let relative = below(path.strip_prefix(root).ok()?);
+    let relative = relative_text(path.strip_prefix(root).ok()?);
     Some(Information { path: shown(&path), relative, bytes })
 }
 

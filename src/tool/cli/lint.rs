@@ -7,6 +7,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
+use serde::Serialize;
 use similar::TextDiff;
 
 use super::backup::{self, is_shared};
@@ -30,59 +31,59 @@ use crate::tool::report;
     back.\n\nExit codes: 0, 1 where more is wasted than --max-waste allows, 2 where nothing can \
     be read.\n\nExample: joulepath lint fixtures/pick_place --robot IRB1600-10/1.45"
 )]
-pub struct LintArgs {
+pub(super) struct LintArgs {
     /// What is run, and where.
     #[command(flatten)]
-    pub cell: CellArgs,
+    pub(super) cell: CellArgs,
 
     /// Only these rules: codes, starts of codes, names or families.
     #[arg(long, value_name = "RULES", value_delimiter = ',')]
-    pub select: Vec<String>,
+    pub(super) select: Vec<String>,
 
     /// Not these rules.
     #[arg(long, value_name = "RULES", value_delimiter = ',')]
-    pub ignore: Vec<String>,
+    pub(super) ignore: Vec<String>,
 
-    /// Least saving that is told, J.
+    /// Least saving that is reported, J.
     #[arg(long, value_name = "JOULES", allow_negative_numbers = true)]
-    pub threshold: Option<f64>,
+    pub(super) threshold: Option<f64>,
 
     /// How the result is written.
     #[arg(long, value_enum, default_value_t = LintFormat::Full)]
-    pub format: LintFormat,
+    pub(super) format: LintFormat,
 
     /// Apply safe fixes in place.
     #[arg(long)]
-    pub fix: bool,
+    pub(super) fix: bool,
 
     /// Apply unsafe fixes too.
     #[arg(long)]
-    pub unsafe_fixes: bool,
+    pub(super) unsafe_fixes: bool,
 
     /// Print what the fixes would change as a unified diff, and write nothing.
     #[arg(long)]
-    pub diff: bool,
+    pub(super) diff: bool,
 
     /// Count findings by rule, and list those that save most, on standard error.
     #[arg(long)]
-    pub statistics: bool,
+    pub(super) statistics: bool,
 
     /// Exit with 1 where the findings waste more: 500J, or 3% of the cycle.
     #[arg(long, value_name = "500J|3%", allow_hyphen_values = true)]
-    pub max_waste: Option<String>,
+    pub(super) max_waste: Option<String>,
 
-    /// Findings that are known: they are not told.
+    /// A file of known findings, which are not reported.
     #[arg(long, value_name = "FILE")]
-    pub baseline: Option<PathBuf>,
+    pub(super) baseline: Option<PathBuf>,
 
     /// Write all findings into a baseline.
     #[arg(long, value_name = "FILE")]
-    pub write_baseline: Option<PathBuf>,
+    pub(super) write_baseline: Option<PathBuf>,
 }
 
 /// Forms of the result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum LintFormat {
+pub(super) enum LintFormat {
     /// With the source.
     #[default]
     Full,
@@ -100,11 +101,7 @@ pub enum LintFormat {
     Junit,
 }
 
-/// Runs the command.
-///
-/// # Errors
-/// Nothing can be read, an option is wrong, or the output can't be written.
-pub fn run(args: &LintArgs) -> anyhow::Result<ExitCode> {
+pub(super) fn run(args: &LintArgs) -> anyhow::Result<ExitCode> {
     let mut setup = Setup::new(args)?;
     let mut report = if args.fix || args.unsafe_fixes || args.diff {
         let report = fix(args, &mut setup.programs)?;
@@ -146,12 +143,7 @@ fn fix(args: &LintArgs, programs: &mut Programs) -> anyhow::Result<Report> {
         }
         return Ok(report);
     }
-    let staged: anyhow::Result<Vec<output::Staged>> = pairs()
-        .map(|(old, new)| output::stage(Path::new(&old.path), &new.stored(&new.bytes)))
-        .collect();
-    for file in staged? {
-        file.put()?;
-    }
+    output::write_all(pairs().map(|(old, new)| (&old.path, new.stored(&new.bytes))))?;
     note(args.cell.quiet, &format!("{applied} fixes applied, {withdrawn} taken back"));
     programs.files = files;
     Ok(report)
@@ -166,9 +158,6 @@ pub(super) struct Setup {
 
 impl Setup {
     /// Reads files, configuration and robot.
-    ///
-    /// # Errors
-    /// Nothing can be read, or an option is wrong.
     pub(super) fn new(args: &LintArgs) -> anyhow::Result<Setup> {
         let input = input::read(&args.cell.paths)?;
         common::note_unreadable(args.cell.quiet, &input);
@@ -207,8 +196,8 @@ fn settings(args: &LintArgs, config: &Config) -> anyhow::Result<Settings> {
     for selector in settings.select.iter().chain(&settings.ignore).chain(ignored).chain(weighed) {
         if !lint::ALL.iter().any(|rule| rule.is_meant(selector)) {
             bail!(
-                "no lint is meant by '{selector}': give a code such as EW101, the start of one, a \
-                 name or a family; joulepath rule lists them"
+                "'{selector}' selects no lint: give a code such as EW101, the start of one, a name or \
+                 a family; joulepath rule lists them"
             );
         }
     }
@@ -233,7 +222,7 @@ fn robot(
             let name = backup.tasks.iter().find_map(|task| task.robot.clone())?;
             Some((root, effects::load_estimated(&name).ok()?))
         });
-        named.map(|(root, model)| common::as_configured(root, model, args.quiet))
+        named.map(|(root, model)| common::with_backup_configuration(root, model, args.quiet))
     };
     let Some(model) = model else { return Ok(None) };
     common::require_six_joints(&model, common::RUN_SIX_JOINTS)?;
@@ -359,6 +348,11 @@ fn drop_known(report: &mut Report, files: &[SourceFile], path: &Path) -> anyhow:
     Ok(())
 }
 
+fn pretty(out: &mut impl Write, document: &impl Serialize) -> anyhow::Result<()> {
+    serde_json::to_writer_pretty(&mut *out, document)?;
+    Ok(writeln!(out)?)
+}
+
 fn write(args: &LintArgs, setup: &Setup, report: &Report) -> anyhow::Result<()> {
     let files = &setup.programs.files;
     let mut out = std::io::BufWriter::new(std::io::stdout().lock());
@@ -370,19 +364,10 @@ fn write(args: &LintArgs, setup: &Setup, report: &Report) -> anyhow::Result<()> 
             write!(out, "{}", report::lint::text::summary(report))?;
         }
         LintFormat::Concise => write!(out, "{}", report::lint::text::concise(report, files))?,
-        LintFormat::Json => {
-            serde_json::to_writer_pretty(&mut out, &report::lint::json::json(report, files))?;
-            writeln!(out)?;
-        }
-        LintFormat::Sarif => {
-            serde_json::to_writer_pretty(&mut out, &report::lint::sarif::sarif(report, files))?;
-            writeln!(out)?;
-        }
+        LintFormat::Json => pretty(&mut out, &report::lint::json::json(report, files))?,
+        LintFormat::Sarif => pretty(&mut out, &report::lint::sarif::sarif(report, files))?,
         LintFormat::Github => write!(out, "{}", report::lint::github::github(report, files))?,
-        LintFormat::Gitlab => {
-            serde_json::to_writer_pretty(&mut out, &report::lint::gitlab::gitlab(report, files))?;
-            writeln!(out)?;
-        }
+        LintFormat::Gitlab => pretty(&mut out, &report::lint::gitlab::gitlab(report, files))?,
         LintFormat::Junit => write!(out, "{}", report::lint::junit::junit(report, files))?,
     }
     out.flush()?;

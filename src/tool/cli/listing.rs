@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use memchr::memmem::find;
+
 use super::input::{Input, Listing};
 use crate::tool::retrofit::{OutputFile, OutputKind, Retrofit, Source};
 
@@ -9,7 +11,7 @@ const BEGIN: &[u8] = b"<Module>";
 const END: &[u8] = b"</Module>";
 
 /// Adds the program files to the outputs, with the new modules next to those of their folder.
-pub fn add(result: &mut Retrofit, input: &Input, files: &[Source]) {
+pub(super) fn add(result: &mut Retrofit, input: &Input, files: &[Source]) {
     let new: Vec<String> = result
         .outputs
         .iter()
@@ -90,7 +92,7 @@ fn extended(bytes: &[u8], neighbour: usize, new: &str) -> Option<Vec<u8>> {
 }
 
 /// A module list without the modules of these file names; emptied lines are removed.
-pub fn without(bytes: &[u8], names: &[String]) -> Vec<u8> {
+pub(super) fn without(bytes: &[u8], names: &[String]) -> Vec<u8> {
     let mut out = bytes.to_vec();
     let mut from = 0;
     while let Some(begin) = find(&out[from..], BEGIN).map(|at| from + at) {
@@ -118,10 +120,6 @@ pub fn without(bytes: &[u8], names: &[String]) -> Vec<u8> {
         }
     }
     out
-}
-
-fn find(bytes: &[u8], part: &[u8]) -> Option<usize> {
-    bytes.windows(part.len()).position(|window| window == part)
 }
 
 #[cfg(test)]

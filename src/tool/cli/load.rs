@@ -11,10 +11,7 @@ const HELP: &str = "give the mass, such as 5; mass and centre of mass in tool0, 
                         [5,[0,0,120],[1,0,0,0],0.01,0.01,0.02]";
 
 /// The load of the option `--load`; no load by default.
-///
-/// # Errors
-/// See [`parse`].
-pub fn from_option(text: Option<&str>) -> anyhow::Result<Load> {
+pub(super) fn from_option(text: Option<&str>) -> anyhow::Result<Load> {
     text.map_or_else(|| Ok(Load::none()), |text| parse("--load", text))
 }
 
@@ -22,7 +19,7 @@ pub fn from_option(text: Option<&str>) -> anyhow::Result<Load> {
 ///
 /// # Errors
 /// There are not 1, 4 or 11 numbers, or they are physically impossible.
-pub fn parse(option: &str, text: &str) -> anyhow::Result<Load> {
+pub(super) fn parse(option: &str, text: &str) -> anyhow::Result<Load> {
     let wrong = || format!("{option} {text}: {HELP}");
     let plain: String = text.chars().filter(|c| !"[] ".contains(*c)).collect();
     let numbers: Result<Vec<f64>, _> = plain.split(',').map(str::parse::<f64>).collect();
@@ -38,7 +35,9 @@ pub fn parse(option: &str, text: &str) -> anyhow::Result<Load> {
     }
     let [w, i, j, k] = axes;
     let turn = UnitQuaternion::try_new(Quaternion::new(w, i, j, k), 1e-3)
-        .with_context(|| format!("{option} {text}: the axes are no orientation"))?
+        .with_context(|| {
+            format!("{option} {text}: the orientation of the axes is not a unit quaternion")
+        })?
         .to_rotation_matrix();
     let inertia =
         turn.matrix() * Matrix3::from_diagonal(&Vector3::from(moments)) * turn.matrix().transpose();

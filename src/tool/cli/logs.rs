@@ -19,70 +19,54 @@ use crate::tool::report::identify::LogRecord;
 /// Share of a single log that is held out.
 const HELD_OUT: f64 = 0.3;
 /// With at most this many repetitions, none is held out as a whole.
-const LEAST_CYCLES: usize = 3;
+const MIN_CYCLES: usize = 3;
 
 /// A log that was read.
-pub struct Read {
+pub(super) struct RawLog {
     /// Its path as given.
-    pub shown: String,
+    pub(super) shown: String,
     /// SHA-256.
-    pub hash: String,
+    pub(super) hash: String,
     /// The log.
-    pub log: Log,
+    pub(super) log: Log,
     /// Quality of the synchronisation of its two halves, if it has two.
     clocks: Option<String>,
 }
 
 /// A log prepared for use.
-pub struct Ready {
+pub(super) struct PreparedLog {
     /// The record of its origin.
-    pub record: LogRecord,
+    pub(super) record: LogRecord,
     /// The samples.
-    pub samples: Samples,
+    pub(super) samples: Samples,
     /// Origin of the torques.
-    pub origin: String,
+    pub(super) origin: String,
     /// The valid rows.
-    pub log: Log,
+    pub(super) log: Log,
     /// Ratio of the logged torques to the weight of the robot file's masses, if implausible.
-    pub weight: Option<f64>,
+    pub(super) weight: Option<f64>,
 }
 
 /// Reads the logs of one robot.
-pub struct Reader<'a> {
+pub(super) struct Reader<'a> {
     /// The robot.
-    pub model: &'a Model,
+    pub(super) model: &'a Model,
     /// Whether to suppress notes on standard error.
-    pub quiet: bool,
+    pub(super) quiet: bool,
     /// Notes on the logs, for the result.
-    pub notes: Vec<String>,
+    pub(super) notes: Vec<String>,
 }
 
 impl Reader<'_> {
     fn tell(&mut self, text: String) {
-        if self.notes.contains(&text) {
-            return;
-        }
-        common::note(self.quiet, &text);
-        self.notes.push(text);
+        common::note_once(self.quiet, &mut self.notes, text);
     }
 
     /// Checks a log and extracts its samples.
-    ///
-    /// # Errors
-    /// It does not match this robot, or is unusable.
-    pub fn ready(&mut self, read: Read, hints: Hints) -> anyhow::Result<Ready> {
+    pub(super) fn prepared(&mut self, read: RawLog, hints: Hints) -> anyhow::Result<PreparedLog> {
         let model = self.model;
-        let Read { shown, hash, log, clocks } = read;
-        if log.joints() != model.dof {
-            bail!(
-                "{shown}: positions of {} joints are logged, {} has {}; give a log with q1 to q{}, or \
-                 another --robot",
-                log.joints(),
-                model.name,
-                model.dof,
-                model.dof
-            );
-        }
+        let RawLog { shown, hash, log, clocks } = read;
+        check_joints(&shown, &log, model)?;
         let (log, impossible) = cleaned(&log);
         for text in summed_up(log.rejected.iter().chain(&impossible)) {
             common::note(self.quiet, &format!("{shown}: {text}"));
@@ -110,21 +94,21 @@ impl Reader<'_> {
         let torque = torques(model, &log).with_context(|| shown.clone())?;
         check_torques(model, &log, &torque.tau).with_context(|| shown.clone())?;
         let weight = weight_factor(model, &log, &torque.tau);
-        let strange = weight.map(|(factor, joint)| of_weight(factor, joint));
+        let strange = weight.map(|(factor, joint)| weight_note(factor, joint));
         for text in clocks.into_iter().chain(strange) {
             self.tell(format!("{shown}: {text}"));
         }
         for text in torque.notes {
             self.tell(format!("{shown}: {text}"));
         }
-        if let Some(text) = unused(&log) {
+        if let Some(text) = unused_columns_note(&log) {
             self.tell(format!("{shown}: {text}"));
         }
         let samples = prepare(&log, &torque.tau, hints).with_context(|| shown.clone())?;
-        if let Some(text) = unfitting(hints.period, &samples.source) {
+        if let Some(text) = period_note(hints.period, &samples.source) {
             self.tell(format!("{shown}: {text}"));
         }
-        Ok(Ready {
+        Ok(PreparedLog {
             record: LogRecord { path: shown, hash, rows: usable, left_out },
             samples,
             origin: torque.origin,
@@ -134,16 +118,28 @@ impl Reader<'_> {
     }
 }
 
+/// Refuses a log of a robot with another number of joints.
+pub(super) fn check_joints(shown: &str, log: &Log, model: &Model) -> anyhow::Result<()> {
+    let (joints, Model { name, dof, .. }) = (log.joints(), model);
+    if joints != *dof {
+        bail!(
+            "{shown}: positions of {joints} joints are logged, {name} has {dof}; give a log with q1 to \
+             q{dof}, or another --robot"
+        );
+    }
+    Ok(())
+}
+
 /// Splits a log into training and held-out part: the last repetitions, or the last part of the
 /// whole.
 ///
 /// # Errors
 /// A part is too short.
-pub fn held_out(model: &Model, of: &Ready) -> anyhow::Result<[Ready; 2]> {
+pub(super) fn held_out(model: &Model, of: &PreparedLog) -> anyhow::Result<[PreparedLog; 2]> {
     let t = of.log.time();
     let (begins, ends) = (t.first().copied().unwrap_or(0.0), t.last().copied().unwrap_or(0.0));
     let (at, period) = match of.samples.source {
-        Source::Periodic { period, periods, .. } if periods > LEAST_CYCLES => {
+        Source::Periodic { period, periods, .. } if periods > MIN_CYCLES => {
             let held = (HELD_OUT * periods as f64) as usize;
             (begins + period * (periods - held.max(1)) as f64, Some(period))
         }
@@ -154,23 +150,24 @@ pub fn held_out(model: &Model, of: &Ready) -> anyhow::Result<[Ready; 2]> {
         Source::Periodic { .. } | Source::Logged => None,
     };
     let (first, last): (Vec<usize>, Vec<usize>) = (0..t.len()).partition(|row| t[*row] < at);
-    let part = |rows: &[usize]| -> anyhow::Result<Ready> {
+    let part = |rows: &[usize]| -> anyhow::Result<PreparedLog> {
         let log = of.log.of_rows(rows);
         let torque = torques(model, &log)?;
         let samples = prepare(&log, &torque.tau, Hints { period, cutoff })?;
         let (record, origin) = (of.record.clone(), of.origin.clone());
-        Ok(Ready { record, samples, origin, log, weight: of.weight })
+        Ok(PreparedLog { record, samples, origin, log, weight: of.weight })
     };
     let shown = &of.record.path;
     Ok([part(&first).with_context(|| shown.clone())?, part(&last).with_context(|| shown.clone())?])
 }
 
 /// Reads logs and merges the halves of one run.
-///
-/// # Errors
-/// A log cannot be read.
-pub fn read_all(paths: &[PathBuf], map: &ColumnMap, model: &Model) -> anyhow::Result<Vec<Read>> {
-    let mut logs: Vec<Read> = Vec::new();
+pub(super) fn read_all(
+    paths: &[PathBuf],
+    map: &ColumnMap,
+    model: &Model,
+) -> anyhow::Result<Vec<RawLog>> {
+    let mut logs: Vec<RawLog> = Vec::new();
     for path in paths {
         let read = read(path, map)?;
         let half = logs
@@ -195,7 +192,8 @@ pub fn read_all(paths: &[PathBuf], map: &ColumnMap, model: &Model) -> anyhow::Re
     Ok(logs)
 }
 
-fn read(path: &Path, map: &ColumnMap) -> anyhow::Result<Read> {
+/// Reads one log.
+pub(super) fn read(path: &Path, map: &ColumnMap) -> anyhow::Result<RawLog> {
     let shown = path.display().to_string();
     if path.is_dir() {
         bail!("{shown}: this is a folder; give the log files in it one by one");
@@ -205,7 +203,7 @@ fn read(path: &Path, map: &ColumnMap) -> anyhow::Result<Read> {
     let mut stream = Hashed { stream: file, hash: Sha256::new() };
     let log = log::read_from(&mut stream, map).with_context(|| shown.clone())?;
     let hash = format!("{:x}", stream.hash.finalize());
-    Ok(Read { shown, hash, log, clocks: None })
+    Ok(RawLog { shown, hash, log, clocks: None })
 }
 
 /// A stream that hashes its bytes while they are read.
@@ -223,7 +221,7 @@ impl io::Read for Hashed {
 }
 
 /// Explains torques that do not match the weight of the robot file's masses.
-fn of_weight(factor: f64, joint: usize) -> String {
+fn weight_note(factor: f64, joint: usize) -> String {
     let times = |times: f64| if times < 10.0 { times } else { times.round() };
     if factor < 1.0 {
         format!(
@@ -243,7 +241,7 @@ fn of_weight(factor: f64, joint: usize) -> String {
 }
 
 /// A note if the given period does not match the motion.
-fn unfitting(period: Option<f64>, source: &Source) -> Option<String> {
+fn period_note(period: Option<f64>, source: &Source) -> Option<String> {
     let given = period?;
     match source {
         Source::Periodic { period, .. } if (period / given - 1.0).abs() <= OTHER_PERIOD => None,
@@ -263,7 +261,7 @@ fn unfitting(period: Option<f64>, source: &Source) -> Option<String> {
 const OTHER_PERIOD: f64 = 0.01;
 
 /// Maximum number of rejected rows per reason that are listed individually.
-const TOLD: usize = 3;
+const MAX_LISTED_ROWS: usize = 3;
 
 /// The rejected rows; for frequent reasons the first ones and the number of others.
 fn summed_up<'a>(rejected: impl Iterator<Item = &'a Rejected>) -> Vec<String> {
@@ -279,7 +277,7 @@ fn summed_up<'a>(rejected: impl Iterator<Item = &'a Rejected>) -> Vec<String> {
         let kind = kind(&row.reason);
         if let Some((.., count)) = kinds.iter_mut().find(|(known, ..)| *known == kind) {
             *count += 1;
-            if *count <= TOLD {
+            if *count <= MAX_LISTED_ROWS {
                 texts.push(text);
             }
         } else {
@@ -287,17 +285,17 @@ fn summed_up<'a>(rejected: impl Iterator<Item = &'a Rejected>) -> Vec<String> {
             texts.push(text);
         }
     }
-    for (_, first, count) in kinds.into_iter().filter(|(.., count)| *count > TOLD) {
+    for (_, first, count) in kinds.into_iter().filter(|(.., count)| *count > MAX_LISTED_ROWS) {
         texts.push(format!(
             "{} more rows left out for the same reason as row {first}",
-            count - TOLD
+            count - MAX_LISTED_ROWS
         ));
     }
     texts
 }
 
 /// A note on logged rates and accelerations that do not cover all joints.
-fn unused(log: &Log) -> Option<String> {
+fn unused_columns_note(log: &Log) -> Option<String> {
     let part = |name: &str, channel: fn(usize) -> Channel| {
         let has = |joint: &usize| log.column(channel(*joint)).is_some();
         let (with, without): (Vec<usize>, Vec<usize>) = (0..log.joints()).partition(has);

@@ -14,7 +14,7 @@ use crate::tool::lsp::{self, Options};
 #[derive(Debug, Args)]
 #[command(after_help = "Editors give robot, entry and inputs as initializationOptions, or a \
     joulepath.toml does.\n\nExample: joulepath lsp --robot IRB1600-10/1.45")]
-pub struct LspArgs {
+pub(super) struct LspArgs {
     /// The robot where the editor names none.
     #[arg(long, value_name = "NAME|FILE")]
     robot: Option<String>,
@@ -28,11 +28,7 @@ pub struct LspArgs {
     inputs: Vec<String>,
 }
 
-/// Runs the command.
-///
-/// # Errors
-/// The client does not speak the protocol.
-pub fn run(args: &LspArgs) -> anyhow::Result<ExitCode> {
+pub(super) fn run(args: &LspArgs) -> anyhow::Result<ExitCode> {
     let LspArgs { robot, entry, inputs } = args;
     let defaults = Options { robot: robot.clone(), entry: entry.clone(), inputs: inputs.clone() };
     lsp::serve(defaults, programs)?;

@@ -1,36 +1,36 @@
 //! The command line.
 
-pub mod backinfo;
-pub mod backup;
-pub mod blind;
-pub mod calibrate;
-pub mod choice;
-pub mod common;
-pub mod diagnose;
-pub mod excite;
-pub mod generate;
-pub mod identify;
-pub mod input;
-pub mod lint;
-pub mod listing;
-pub mod load;
-pub mod logs;
+mod backinfo;
+mod backup;
+mod blind;
+mod calibrate;
+mod choice;
+mod common;
+mod diagnose;
+mod excite;
+mod generate;
+mod identify;
+mod input;
+mod lint;
+mod listing;
+mod load;
+mod logs;
 #[cfg(feature = "lsp")]
-pub mod lsp;
-pub mod optimize;
-pub mod output;
-pub mod parse;
-pub mod predict;
-pub mod refresh;
-pub mod robots;
-pub mod rule;
-pub mod signals;
-pub mod simulate;
-pub mod standstill;
-pub mod streams;
-pub mod streamtest;
-pub mod undo;
-mod written;
+mod lsp;
+mod optimize;
+mod output;
+mod parse;
+mod predict;
+mod program_output;
+mod refresh;
+mod robots;
+mod rule;
+mod signals;
+mod simulate;
+mod standstill;
+mod streams;
+mod streamtest;
+mod undo;
 
 use std::io::{ErrorKind, Write as _};
 use std::process::ExitCode;
@@ -40,7 +40,7 @@ use clap::{Parser, Subcommand};
 /// A compiler for ABB RAPID programs that saves energy.
 #[derive(Debug, Parser)]
 #[command(name = "joulepath", version)]
-pub struct Cli {
+struct Cli {
     #[command(subcommand)]
     command: Command,
 }

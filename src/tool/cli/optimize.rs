@@ -11,7 +11,9 @@ use nalgebra::{Point3, Vector3};
 use similar::TextDiff;
 
 use super::common::{self, Format, Job, ProgramArgs};
-use super::written::{now, outside, whole_backup, write_folder, write_in_place};
+use super::program_output::{
+    current_bytes, refuse_nested_output, whole_backup, write_folder, write_in_place,
+};
 use super::{backinfo, input, listing, output, streams, undo};
 use crate::arm::kinematics::{self, Obstacle, Plane};
 use crate::rapid::text::charset;
@@ -33,7 +35,7 @@ use crate::tool::retrofit::{
     after_help = "Example: joulepath optimize fixtures/pick_place --robot IRB1600-10/1.45 --out optimized"
 )]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag of the command line")]
-pub struct OptimizeArgs {
+pub(super) struct OptimizeArgs {
     #[command(flatten)]
     program: ProgramArgs,
 
@@ -197,42 +199,36 @@ const LARGEST_DEVIATION_MM: f64 = 1000.0;
 /// Maximum joint displacement to a waiting pose, degrees.
 const LARGEST_DWELL_POSE_DEG: f64 = 90.0;
 
-/// Runs the command.
-///
-/// # Errors
-/// Unusable input, or output that cannot be written.
-pub fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
+pub(super) fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
     if args.undo {
-        return take_back(args);
+        return undo_in_place(args);
     }
-    work(args, &common::prepare(&args.program)?)
+    optimize_job(args, &common::prepare(&args.program)?)
 }
 
 /// Optimises a program that already has streams and replaces these.
-///
-/// # Errors
-/// The program has no streams, or an error of [`run`].
-pub fn refresh(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
+pub(super) fn refresh(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
     if args.undo {
-        bail!("refresh takes nothing back: joulepath optimize --undo does");
+        bail!("refresh cannot undo changes; use joulepath optimize --undo");
     }
     let mut input = input::read(&args.program.cell.paths)?;
-    let streams = streams::take_out(&mut input)?;
+    let streams = streams::remove_streams(&mut input)?;
     let job = common::prepare_read(&args.program, input)?;
-    work(args, &Job { streams, ..job })
+    optimize_job(args, &Job { streams, ..job })
 }
 
-fn work(args: &OptimizeArgs, job: &Job) -> anyhow::Result<ExitCode> {
+fn optimize_job(args: &OptimizeArgs, job: &Job) -> anyhow::Result<ExitCode> {
     let settings = settings(args, job)?;
+    let quiet = args.program.cell.quiet;
     // The folder of a single task does not include the controller's module list.
     let paths = args.program.cell.paths.as_slice();
     let backup = whole_backup(paths, job);
     if let (Some(folder), None) = (&args.out, backup) {
-        outside(folder, paths)?;
+        refuse_nested_output(folder, paths)?;
     }
     let lists = backup.is_some() || (args.in_place && args.out.is_none());
     let result = {
-        let bar = progress(args.program.cell.quiet);
+        let bar = progress(quiet);
         let result = retrofit(&job.files, &job.model, &settings, &|done, all| {
             bar.set_length(all as u64);
             bar.set_position(done as u64);
@@ -247,16 +243,14 @@ fn work(args: &OptimizeArgs, job: &Job) -> anyhow::Result<ExitCode> {
                     .to_owned(),
             );
         }
-        job.streams.restate(&mut result);
+        job.streams.restore_stated_data(&mut result);
         listing::add(&mut result, &job.input, &job.files);
         if lists {
             backinfo::add(&mut result, &job.input);
         }
         result
     };
-    for text in &result.notes {
-        common::note(args.program.cell.quiet, text);
-    }
+    common::notes(quiet, &result.notes);
     let sources = job.sources();
     let places = Places::new(&sources);
     let mut written = Vec::new();
@@ -272,12 +266,8 @@ fn work(args: &OptimizeArgs, job: &Job) -> anyhow::Result<ExitCode> {
         written.push(path.display().to_string());
     }
     if args.program.format == Format::Text {
-        for text in report::text::notes(&job.model, places, &result.before.0) {
-            common::note(args.program.cell.quiet, &text);
-        }
-        for path in &written {
-            common::note(args.program.cell.quiet, &format!("wrote {path}"));
-        }
+        common::notes(quiet, report::text::notes(&job.model, places, &result.before.0));
+        common::notes(quiet, written.iter().map(|path| format!("wrote {path}")));
     }
     common::print(
         args.program.format,
@@ -406,10 +396,7 @@ fn dwell_pose(degrees: f64) -> anyhow::Result<f64> {
 }
 
 /// Minimum time between two points of a stream, s.
-///
-/// # Errors
-/// The time is outside the permitted range.
-pub fn spacing(asked: Option<f64>) -> anyhow::Result<f64> {
+pub(super) fn spacing(asked: Option<f64>) -> anyhow::Result<f64> {
     let spacing_s = asked.unwrap_or(SPACING_S);
     if !(LEAST_SPACING_S..=LARGEST_SPACING_S).contains(&spacing_s) {
         bail!("--spacing {spacing_s}: give {LEAST_SPACING_S} to {LARGEST_SPACING_S} s");
@@ -429,25 +416,22 @@ fn progress(quiet: bool) -> ProgressBar {
 }
 
 /// Undoes the changes of an earlier run in place.
-fn take_back(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
+fn undo_in_place(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
     let cell = &args.program.cell;
     let mut done = Vec::new();
     for path in &cell.paths {
         done.extend(undo::undo(path)?);
     }
     if args.program.format == Format::Text {
-        for text in &done {
-            common::note(cell.quiet, text);
-        }
+        common::notes(cell.quiet, &done);
     }
-    common::print(args.program.format, || serde_json::json!({ "undone": done }), String::new)?;
-    Ok(ExitCode::SUCCESS)
+    common::print(args.program.format, || serde_json::json!({ "undone": done }), String::new)
 }
 
 fn diff(job: &Job, result: &Retrofit) -> String {
     let mut text = String::new();
     for file in &result.outputs {
-        let before = now(job, file).unwrap_or_default();
+        let before = current_bytes(job, file).unwrap_or_default();
         if before == file.bytes {
             continue;
         }

@@ -6,16 +6,13 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 
 /// A written file that is not yet at its final path.
-pub struct Staged {
+pub(super) struct Staged {
     file: tempfile::NamedTempFile,
     path: PathBuf,
 }
 
 /// Writes a file completely or not at all.
-///
-/// # Errors
-/// The folder cannot be created or written.
-pub fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+pub(super) fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
     stage(path, bytes)?.put()
 }
 
@@ -23,7 +20,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
 ///
 /// # Errors
 /// As [`write()`]; also if a read-only file exists at the path.
-pub fn stage(path: &Path, bytes: &[u8]) -> anyhow::Result<Staged> {
+pub(super) fn stage(path: &Path, bytes: &[u8]) -> anyhow::Result<Staged> {
     // A link stays a link: its target is written.
     let path = &path.canonicalize().unwrap_or_else(|_| path.to_owned());
     if std::fs::metadata(path).is_ok_and(|metadata| metadata.permissions().readonly()) {
@@ -55,26 +52,35 @@ pub fn stage(path: &Path, bytes: &[u8]) -> anyhow::Result<Staged> {
 
 impl Staged {
     /// Moves the file to its path and replaces an existing one.
-    ///
-    /// # Errors
-    /// The path cannot be written.
-    pub fn put(self) -> anyhow::Result<()> {
+    pub(super) fn put(self) -> anyhow::Result<()> {
         let path = self.path;
         self.file.persist(&path).map_err(|error| error.error).with_context(|| failed(&path))?;
         Ok(())
     }
 }
 
+/// Writes files; none is replaced before all are written.
+pub(super) fn write_all<P: AsRef<Path>, B: AsRef<[u8]>>(
+    files: impl IntoIterator<Item = (P, B)>,
+) -> anyhow::Result<()> {
+    let staged: anyhow::Result<Vec<Staged>> =
+        files.into_iter().map(|(path, bytes)| stage(path.as_ref(), bytes.as_ref())).collect();
+    staged?.into_iter().try_for_each(Staged::put)
+}
+
+/// Whether two paths lead to the same existing file.
+pub(super) fn is_same_file(a: &Path, b: &Path) -> bool {
+    a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b))
+}
+
 /// Writes files into a folder, with paths relative to it. A new folder appears all at once; in an
 /// existing one, no file is replaced before all are written.
-///
-/// # Errors
-/// As [`write()`].
-pub fn write_folder(folder: &Path, files: &[(PathBuf, &[u8])]) -> anyhow::Result<()> {
+pub(super) fn write_folder<P: AsRef<Path>, B: AsRef<[u8]>>(
+    folder: &Path,
+    files: impl IntoIterator<Item = (P, B)>,
+) -> anyhow::Result<()> {
     if folder.exists() {
-        let staged: Result<Vec<Staged>, _> =
-            files.iter().map(|(path, bytes)| stage(&folder.join(path), bytes)).collect();
-        return staged?.into_iter().try_for_each(Staged::put);
+        return write_all(files.into_iter().map(|(path, bytes)| (folder.join(path), bytes)));
     }
     let beside = parent(folder);
     std::fs::create_dir_all(beside).with_context(|| failed(folder))?;
@@ -83,7 +89,7 @@ pub fn write_folder(folder: &Path, files: &[(PathBuf, &[u8])]) -> anyhow::Result
         .tempdir_in(beside)
         .with_context(|| failed(folder))?;
     for (path, bytes) in files {
-        write(&whole.path().join(path), bytes)?;
+        write(&whole.path().join(path), bytes.as_ref())?;
     }
     #[cfg(unix)]
     {

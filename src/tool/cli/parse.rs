@@ -4,11 +4,12 @@ use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use rayon::prelude::*;
 use serde::Serialize;
 
 use super::backup::Backup;
+use super::common::{self, Format};
 use super::input::{self, InputFile, Place};
 use crate::rapid::builtins::is_of_move_family;
 use crate::rapid::diagnostics::{self, Diagnostic, Label, Paint};
@@ -21,40 +22,25 @@ use crate::rapid::text::{self, FileId, SourceFile, Span};
     Search families, wherever they stand: also in handlers and in routines that nothing \
     calls, not in comments and strings.\n\n\
     Example: joulepath parse backup/RAPID --format json")]
-pub struct ParseArgs {
+pub(super) struct ParseArgs {
     /// Module files, folders, .pgf programs or controller backups.
     #[arg(required = true)]
-    pub paths: Vec<PathBuf>,
+    pub(super) paths: Vec<PathBuf>,
 
     /// How the result is written.
-    #[arg(long, value_enum, default_value_t = ParseFormat::Text)]
-    pub format: ParseFormat,
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(super) format: Format,
 
     /// Print the syntax tree of each file.
     #[arg(long)]
-    pub tree: bool,
-}
-
-/// Forms of the result.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum ParseFormat {
-    /// For people.
-    Text,
-    /// For programs.
-    Json,
+    pub(super) tree: bool,
 }
 
 /// Runs the command: the result goes to standard output, notes to standard error.
-///
-/// # Errors
-/// Nothing can be read, or the output cannot be written.
-pub fn run(args: &ParseArgs) -> anyhow::Result<ExitCode> {
+pub(super) fn run(args: &ParseArgs) -> anyhow::Result<ExitCode> {
     let input = input::read(&args.paths)?;
-    let mut notes = std::io::stderr().lock();
-    for unreadable in &input.unreadable {
-        writeln!(notes, "note: skipped '{}': {}", unreadable.path, unreadable.reason)?;
-    }
-    let ansi = args.format == ParseFormat::Text && std::io::stdout().is_terminal();
+    common::note_unreadable(false, &input);
+    let ansi = args.format == Format::Text && std::io::stdout().is_terminal();
     let paint = if ansi { Paint::Ansi } else { Paint::Plain };
     // Each tree is dropped with its file, so that memory holds only the largest files.
     let (files, texts): (Vec<FileReport>, Vec<String>) = input
@@ -64,8 +50,8 @@ pub fn run(args: &ParseArgs) -> anyhow::Result<ExitCode> {
             let parse = syntax::parse(&file.source.bytes);
             let tree = if args.tree { tree(file, &parse) } else { String::new() };
             let text = match args.format {
-                ParseFormat::Json => tree,
-                ParseFormat::Text => tree + &errors(file, &parse, paint),
+                Format::Json => tree,
+                Format::Text => tree + &errors(file, &parse, paint),
             };
             (report(file, &parse, &input.backups), text)
         })
@@ -80,12 +66,12 @@ pub fn run(args: &ParseArgs) -> anyhow::Result<ExitCode> {
 
     let mut out = std::io::BufWriter::new(std::io::stdout().lock());
     match args.format {
-        ParseFormat::Json => {
+        Format::Json => {
             let trees = args.tree.then_some(texts);
             serde_json::to_writer(&mut out, &Report { files, totals, backups, trees })?;
             writeln!(out)?;
         }
-        ParseFormat::Text => {
+        Format::Text => {
             for (text, report) in texts.iter().zip(&files) {
                 writeln!(out, "{text}{}", summary(report))?;
             }

@@ -12,26 +12,27 @@ use anyhow::{Context, bail};
 use clap::Args;
 
 use self::doubts::doubts;
+use super::logs::check_joints;
 use super::{common, load, output};
 use crate::arm::dynamics::{Data, Load, apparent_torques};
 use crate::arm::effects;
 use crate::arm::robot::{Model, Provenance, Use, ready};
-use crate::learn::log::{self, ColumnMap, MIN_ROWS, Motion};
+use crate::learn::log::{self, ColumnMap, MIN_ROWS, Motion, Rejected};
 use crate::rapid::text::{FileId, SourceFile};
 use crate::retime::energy::power::{power_at, supply_w};
 
 /// Byte order marks of spreadsheet exports.
-const UTF_16: [&[u8]; 2] = [b"\xFF\xFE", b"\xFE\xFF"];
+const UTF16_MARKS: [&[u8]; 2] = [b"\xFF\xFE", b"\xFE\xFF"];
 
 /// The reason for a row without prediction.
-const BEYOND: &str = "its motion is so large that torque or power is not finite";
+const NOT_FINITE: &str = "its motion is so large that torque or power is not finite";
 
 /// Torques and powers that a model predicts for a logged motion, as CSV.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: joulepath predict --robot IRB1600-10/1.45 --log motion.csv --out torque.csv"
 )]
-pub struct PredictArgs {
+pub(super) struct PredictArgs {
     /// The robot: a name (joulepath robots list) or a robot file.
     #[arg(long, value_name = "NAME|FILE")]
     robot: String,
@@ -58,33 +59,22 @@ pub struct PredictArgs {
     quiet: bool,
 }
 
-/// Runs the command.
-///
-/// # Errors
-/// A model without dynamics, a log that cannot be used, or output that cannot be written.
-pub fn run(args: &PredictArgs) -> anyhow::Result<ExitCode> {
+pub(super) fn run(args: &PredictArgs) -> anyhow::Result<ExitCode> {
     let model = effects::load(&args.robot)?;
     let model = if model.has_dynamics() { model } else { effects::load_estimated(&args.robot)? };
     ready(&model, Use::Predict)?;
     let load = load::from_option(args.load.as_deref())?;
     let map = ColumnMap::parse(&args.map)?;
-    let shown = args.log.display();
+    let shown = args.log.display().to_string();
     let bytes = fs::read(&args.log)
         .with_context(|| format!("cannot read '{shown}'; check the path and its permissions"))?;
-    let bytes = if UTF_16.iter().any(|mark| bytes.starts_with(mark)) {
-        SourceFile::new(FileId(0), shown.to_string(), bytes).bytes
+    let bytes = if UTF16_MARKS.iter().any(|mark| bytes.starts_with(mark)) {
+        SourceFile::new(FileId(0), shown.clone(), bytes).bytes
     } else {
         bytes
     };
-    let log = log::read(&bytes, &map).with_context(|| shown.to_string())?;
-    if log.joints() != model.dof {
-        let (name, dof) = (&model.name, model.dof);
-        bail!(
-            "{shown}: positions of {} joints are logged, {name} has {dof}; give a log with q1 to \
-             q{dof}, or another --robot",
-            log.joints()
-        );
-    }
+    let log = log::read(&bytes, &map).with_context(|| shown.clone())?;
+    check_joints(&shown, &log, &model)?;
     let motion = log.motion();
     if motion.time.len() < MIN_ROWS {
         bail!(
@@ -93,10 +83,9 @@ pub fn run(args: &PredictArgs) -> anyhow::Result<ExitCode> {
             motion.time.len()
         );
     }
-    for rejected in log.rejected.iter().chain(&motion.left_out) {
-        let text = format!("{shown}: row {} left out: {}", rejected.row, rejected.reason);
-        common::note(args.quiet, &text);
-    }
+    let rejected = log.rejected.iter().chain(&motion.left_out);
+    let left_out = |of: &Rejected| format!("{shown}: row {} left out: {}", of.row, of.reason);
+    common::notes(args.quiet, rejected.map(left_out));
     if !motion.differentiated.is_empty() {
         let what = motion.differentiated.join(" and ");
         common::note(args.quiet, &format!("{shown}: {what} are not logged, but differentiated"));
@@ -110,19 +99,15 @@ pub fn run(args: &PredictArgs) -> anyhow::Result<ExitCode> {
         );
         common::note(args.quiet, &text);
     }
-    for text in model.assumed() {
-        common::note(args.quiet, &text);
-    }
-    for doubt in doubts(&model, &motion) {
-        common::note(args.quiet, &format!("{shown}: {doubt}"));
-    }
+    common::notes(args.quiet, model.assumed());
+    let doubts = doubts(&model, &motion);
+    common::notes(args.quiet, doubts.iter().map(|doubt| format!("{shown}: {doubt}")));
     let (csv, beyond) = prediction(&model, &load, &motion);
     if beyond.len() == motion.time.len() {
-        bail!("{shown}: {BEYOND} in every row; give positions in rad, rates in rad/s");
+        bail!("{shown}: {NOT_FINITE} in every row; give positions in rad, rates in rad/s");
     }
-    for row in beyond {
-        common::note(args.quiet, &format!("{shown}: row {row} left out: {BEYOND}"));
-    }
+    let left_out = |row: u64| format!("{shown}: row {row} left out: {NOT_FINITE}");
+    common::notes(args.quiet, beyond.into_iter().map(left_out));
     match &args.out {
         Some(path) => output::write(path, csv.as_bytes())?,
         None => std::io::stdout().lock().write_all(csv.as_bytes())?,

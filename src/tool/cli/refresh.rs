@@ -14,15 +14,11 @@ use super::optimize::{self, OptimizeArgs};
                   tools and other data of today. It is optimised again. Give the options that were \
                   given to optimize."
 )]
-pub struct RefreshArgs {
+pub(super) struct RefreshArgs {
     #[command(flatten)]
     optimize: OptimizeArgs,
 }
 
-/// Runs the command.
-///
-/// # Errors
-/// The program has no streams, or an error of `optimize`.
-pub fn run(args: &RefreshArgs) -> anyhow::Result<ExitCode> {
+pub(super) fn run(args: &RefreshArgs) -> anyhow::Result<ExitCode> {
     optimize::refresh(&args.optimize)
 }

@@ -12,16 +12,12 @@ use crate::tool::lint::{ALL, find};
 /// Show the documentation of a lint, or list all.
 #[derive(Debug, Args)]
 #[command(after_help = "Example: joulepath rule EW101")]
-pub struct RuleArgs {
+pub(super) struct RuleArgs {
     /// Its code or name; without one all are listed.
     code: Option<String>,
 }
 
-/// Runs the command.
-///
-/// # Errors
-/// The rule does not exist, or the output cannot be written.
-pub fn run(args: &RuleArgs) -> anyhow::Result<ExitCode> {
+pub(super) fn run(args: &RuleArgs) -> anyhow::Result<ExitCode> {
     let mut out = std::io::stdout().lock();
     let Some(code) = &args.code else {
         for rule in ALL {

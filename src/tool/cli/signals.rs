@@ -12,10 +12,7 @@ use crate::rapid::ir::signals::{Signal, signals};
 use crate::retime::motion::Simulation;
 
 /// Checks the signal names of `--assume` and `--input`, and the levels.
-///
-/// # Errors
-/// The program does not use a signal, or a level is invalid.
-pub fn check(
+pub(super) fn check(
     args: &CellArgs,
     levels: &BTreeMap<String, f64>,
     program: &Program,
@@ -23,7 +20,7 @@ pub fn check(
     let known = signals(program);
     for (option, texts) in [("--assume", &args.levels), ("--input", &args.inputs)] {
         for text in texts {
-            let name = text.split('=').next().unwrap_or_default().trim();
+            let name = signal_name(text);
             if !known.contains_key(&name.to_lowercase()) {
                 let names = known.values().map(|signal| signal.name.as_str());
                 let way_out = nearest(name, names).map_or_else(
@@ -53,15 +50,19 @@ pub fn check(
     Ok(())
 }
 
+/// The signal of an option `SIGNAL=VALUE`.
+fn signal_name(text: &str) -> &str {
+    text.split('=').next().unwrap_or_default().trim()
+}
+
 /// Notes on levels that the simulated cycle did not use.
-pub fn unused_levels(args: &CellArgs, simulation: &Simulation) -> Vec<String> {
-    let mut notes = Vec::new();
-    for text in &args.levels {
-        let name = text.split('=').next().unwrap_or_default().trim();
+pub(super) fn unused_levels(args: &CellArgs, simulation: &Simulation) -> Vec<String> {
+    let is_used = |name: &&str| {
         let begin = format!("{} is ", name.to_lowercase());
-        if !simulation.assumed.iter().any(|text| text.to_lowercase().starts_with(&begin)) {
-            notes.push(format!("the cycle does not ask for the level of {name}: it is not used"));
-        }
-    }
-    notes
+        simulation.assumed.iter().any(|text| text.to_lowercase().starts_with(&begin))
+    };
+    let unused = args.levels.iter().map(|text| signal_name(text)).filter(|name| !is_used(name));
+    unused
+        .map(|name| format!("the cycle does not ask for the level of {name}: it is not used"))
+        .collect()
 }

@@ -23,7 +23,7 @@ use crate::tool::retrofit::read_program;
 #[command(
     after_help = "Example: joulepath simulate fixtures/pick_place --robot IRB1600-10/1.45 --input diMcReady=20"
 )]
-pub struct SimulateArgs {
+pub(super) struct SimulateArgs {
     #[command(flatten)]
     program: ProgramArgs,
 
@@ -39,11 +39,7 @@ pub struct SimulateArgs {
 /// Maximum number of trajectory rows in memory.
 const MAX_ROWS: f64 = 5e6;
 
-/// Runs the command.
-///
-/// # Errors
-/// Unusable input, or output that cannot be written.
-pub fn run(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
+pub(super) fn run(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
     let job = common::prepare(&args.program)?;
     let (program, entry) = read_program(&job.files, &job.entry)?;
     signals::check(&args.program.cell, &job.options.levels, &program)?;
@@ -83,18 +79,14 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
     }
     let mut notes = job.unused_inputs(&simulation);
     notes.extend(signals::unused_levels(&args.program.cell, &simulation));
-    for text in &notes {
-        common::note(args.program.cell.quiet, text);
-    }
+    let quiet = args.program.cell.quiet;
+    common::notes(quiet, &notes);
     if args.program.format == Format::Text {
-        for text in report::text::notes(&job.model, places, &simulation) {
-            common::note(args.program.cell.quiet, &text);
-        }
+        common::notes(quiet, report::text::notes(&job.model, places, &simulation));
     }
     common::print(
         args.program.format,
         || report::json::simulation(simulated, places, &notes),
         || report::text::simulation(simulated, places),
-    )?;
-    Ok(ExitCode::SUCCESS)
+    )
 }

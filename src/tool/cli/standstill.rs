@@ -24,7 +24,7 @@ use crate::tool::retrofit::read_program;
     mut_arg("paths", |paths| paths.required(false)),
     after_help = "Examples: joulepath standstill --robot IRB1600-10/1.45 --pose \"0,90,-90,0,0,0\"\n          joulepath standstill fixtures/pick_place"
 )]
-pub struct StandstillArgs {
+pub(super) struct StandstillArgs {
     #[command(flatten)]
     program: ProgramArgs,
 
@@ -42,11 +42,7 @@ pub struct StandstillArgs {
     within: f64,
 }
 
-/// Runs the command.
-///
-/// # Errors
-/// Unusable input, or a robot with unknown holding power.
-pub fn run(args: &StandstillArgs) -> anyhow::Result<ExitCode> {
+pub(super) fn run(args: &StandstillArgs) -> anyhow::Result<ExitCode> {
     if !(args.within.is_finite() && args.within >= 0.0) {
         bail!("--within {}: give a distance of 0 degrees or more", args.within);
     }
@@ -54,26 +50,26 @@ pub fn run(args: &StandstillArgs) -> anyhow::Result<ExitCode> {
         bail!("nothing to look at: give poses with --pose DEG,…, or the PATH of a program");
     }
     let distance = args.within.to_radians();
-    let (model, poses, assumed) =
-        if args.pose.is_empty() { of_program(args, distance)? } else { of_poses(args, distance)? };
+    let (model, poses, assumed) = if args.pose.is_empty() {
+        dwells_of_program(args, distance)?
+    } else {
+        given_poses(args, distance)?
+    };
     if model.brakes.is_none() {
         let text = format!("{} has no [brakes]: nothing is said of when they pay", model.name);
         common::note(args.program.cell.quiet, &text);
     }
     if args.program.format == Format::Text {
-        for text in &assumed {
-            common::note(args.program.cell.quiet, text);
-        }
+        common::notes(args.program.cell.quiet, &assumed);
     }
     common::print(
         args.program.format,
         || standstill::json(&model, &poses, &assumed),
         || standstill::text(&poses),
-    )?;
-    Ok(ExitCode::SUCCESS)
+    )
 }
 
-fn of_poses(
+fn given_poses(
     args: &StandstillArgs,
     distance: f64,
 ) -> anyhow::Result<(Model, Vec<Pose>, Vec<String>)> {
@@ -94,7 +90,7 @@ fn of_poses(
     Ok((model, poses, assumed))
 }
 
-fn of_program(
+fn dwells_of_program(
     args: &StandstillArgs,
     distance: f64,
 ) -> anyhow::Result<(Model, Vec<Pose>, Vec<String>)> {
@@ -104,9 +100,7 @@ fn of_program(
     let simulation = motion::simulate(&program, entry, &job.model, &job.options);
     let sources = job.sources();
     let places = Places::new(&sources);
-    for text in text::notes(&job.model, places, &simulation) {
-        common::note(args.program.cell.quiet, &text);
-    }
+    common::notes(args.program.cell.quiet, text::notes(&job.model, places, &simulation));
     let plausible = plausible(args, &job.model);
     let poses = dwells(&job.model, &simulation)
         .iter()

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use anyhow::bail;
+use memchr::memmem;
 
 use super::input::Input;
 use super::{backinfo, listing};
@@ -13,9 +14,9 @@ use crate::tool::retrofit::{
 
 /// The additions of a retrofit to a program.
 #[derive(Clone, Debug, Default)]
-pub struct Streams {
+pub(super) struct Streams {
     /// The modules of streams.
-    pub modules: Vec<PathBuf>,
+    pub(super) modules: Vec<PathBuf>,
     /// Data that the user stated in them: name without prefix, and text.
     stated: Vec<(&'static str, Vec<u8>)>,
 }
@@ -24,10 +25,7 @@ pub struct Streams {
 const STATED: [&str; 2] = ["RobotType", "SerialNo"];
 
 /// Removes the streams from a program.
-///
-/// # Errors
-/// The program has no streams.
-pub fn take_out(input: &mut Input) -> anyhow::Result<Streams> {
+pub(super) fn remove_streams(input: &mut Input) -> anyhow::Result<Streams> {
     let mut streams = Streams::default();
     let mut prefixes: Vec<String> = Vec::new();
     let mut names: Vec<String> = Vec::new();
@@ -38,8 +36,8 @@ pub fn take_out(input: &mut Input) -> anyhow::Result<Streams> {
         prefixes.extend(prefix(bytes).filter(|prefix| !prefixes.contains(prefix)));
         for name in STATED {
             // Text that joulepath itself stated is also in the header of the module.
-            let text = datum(bytes, name).map(|at| bytes[at].to_vec());
-            let text = text.filter(|text| !text.is_empty() && !in_head(bytes, text));
+            let text = string_value(bytes, name).map(|at| bytes[at].to_vec());
+            let text = text.filter(|text| !text.is_empty() && !is_in_header(bytes, text));
             streams.stated.extend(text.map(|text| (name, text)));
         }
     }
@@ -73,10 +71,10 @@ pub fn take_out(input: &mut Input) -> anyhow::Result<Streams> {
 
 impl Streams {
     /// Copies the data that the user stated into the new modules.
-    pub fn restate(&self, result: &mut Retrofit) {
+    pub(super) fn restore_stated_data(&self, result: &mut Retrofit) {
         for file in result.outputs.iter_mut().filter(|file| file.kind == OutputKind::New) {
             for (name, text) in &self.stated {
-                if let Some(at) = datum(&file.bytes, name) {
+                if let Some(at) = string_value(&file.bytes, name) {
                     file.bytes.splice(at, text.iter().copied());
                 }
             }
@@ -85,16 +83,16 @@ impl Streams {
 }
 
 /// The range of the value of a string datum in a module text.
-fn datum(bytes: &[u8], name: &str) -> Option<std::ops::Range<usize>> {
+fn string_value(bytes: &[u8], name: &str) -> Option<std::ops::Range<usize>> {
     let begin = format!("{name}:=\"").into_bytes();
-    let start = bytes.windows(begin.len()).position(|window| window == begin)? + begin.len();
+    let start = memmem::find(bytes, &begin)? + begin.len();
     let length = bytes[start..].iter().position(|b| *b == b'"')?;
     Some(start..start + length)
 }
 
 /// Whether the header comment of a module contains a text.
-fn in_head(bytes: &[u8], text: &[u8]) -> bool {
+fn is_in_header(bytes: &[u8], text: &[u8]) -> bool {
     let lines = bytes.split(|b| *b == b'\n').skip(1);
     let mut head = lines.take_while(|line| line.trim_ascii_start().starts_with(b"!"));
-    head.any(|line| line.windows(text.len()).any(|window| window == text))
+    head.any(|line| memmem::find(line, text).is_some())
 }

@@ -30,7 +30,7 @@ const REST: f64 = 0.2;
 #[command(
     after_help = "Examples: joulepath streamtest --robot IRB1600-10/1.45 --out test\n          joulepath streamtest --robot IRB1600-10/1.45 --log streamtest_log.csv"
 )]
-pub struct StreamtestArgs {
+pub(super) struct StreamtestArgs {
     /// The robot: a name (joulepath robots list) or a robot file.
     #[arg(long, value_name = "NAME|FILE")]
     robot: String,
@@ -56,11 +56,7 @@ pub struct StreamtestArgs {
     quiet: bool,
 }
 
-/// Runs the command.
-///
-/// # Errors
-/// A robot without limits, a pose without room, an unusable log, or output that cannot be written.
-pub fn run(args: &StreamtestArgs) -> anyhow::Result<ExitCode> {
+pub(super) fn run(args: &StreamtestArgs) -> anyhow::Result<ExitCode> {
     let model = effects::load(&args.robot)?;
     common::require_six_joints(&model, "RAPID is written for robots with 6")?;
     let start = common::six_degrees("--start", &args.start)?;
@@ -94,9 +90,8 @@ fn write(
         .collect();
     let [motion, logger] = stream_test(&model.name, &streams)?;
     let table = ("streamtest.csv".to_owned(), predicted(tests));
-    for text in model.assumed().iter().filter(|text| text.starts_with("limits.")) {
-        common::note(args.quiet, text);
-    }
+    let limits = |text: &String| text.starts_with("limits.");
+    common::notes(args.quiet, model.assumed().into_iter().filter(limits));
     let mut outputs = Vec::new();
     for (name, text) in [motion, logger, table] {
         let path = folder.join(name);
@@ -125,8 +120,7 @@ fn write(
         }
         text
     };
-    common::print(args.format, json, text)?;
-    Ok(ExitCode::SUCCESS)
+    common::print(args.format, json, text)
 }
 
 /// The log of a controller that runs streams as assumed.
@@ -154,7 +148,8 @@ fn compare(
     path: &std::path::Path,
 ) -> anyhow::Result<ExitCode> {
     let shown = path.display();
-    let bytes = std::fs::read(path).with_context(|| format!("'{shown}' can't be read"))?;
+    let bytes = std::fs::read(path)
+        .with_context(|| format!("cannot read '{shown}'; check the path and its permissions"))?;
     let log = log::read(&bytes, &ColumnMap::default()).with_context(|| format!("'{shown}'"))?;
     let Some(command) = log.column(Channel::Command) else {
         bail!("'{shown}' has no column cmd, the number of the test: give the logger's file");

@@ -6,7 +6,6 @@
 //! a file that was edited since is neither restored nor deleted.
 
 use std::borrow::Cow;
-use std::fmt::Write as _;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
@@ -25,13 +24,13 @@ const ORIGINALS: &str = "files";
 const VERSION: u32 = 1;
 
 /// A file to write in place.
-pub struct Change<'a> {
+pub(super) struct Change<'a> {
     /// Its path.
-    pub path: PathBuf,
+    pub(super) path: PathBuf,
     /// The content that undo restores; `None` for a new file.
-    pub before: Option<Vec<u8>>,
+    pub(super) before: Option<Vec<u8>>,
     /// Its new content.
-    pub after: Cow<'a, [u8]>,
+    pub(super) after: Cow<'a, [u8]>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -59,7 +58,7 @@ enum Kind {
 }
 
 /// An undo folder that is not written yet.
-pub struct Plan<'a> {
+pub(super) struct Plan<'a> {
     folder: PathBuf,
     files: Vec<(PathBuf, Cow<'a, [u8]>)>,
 }
@@ -69,16 +68,16 @@ pub struct Plan<'a> {
 ///
 /// # Errors
 /// The undo folder or a new file already exists, or a file lies outside `root`.
-pub fn plan<'a>(
+pub(super) fn plan<'a>(
     root: &Path,
     changes: &'a [Change<'_>],
     streams: &[PathBuf],
 ) -> anyhow::Result<Plan<'a>> {
-    let root = real(root)?;
-    let folder = beside(&root)?;
+    let root = canonical(root)?;
+    let folder = undo_folder(&root)?;
     if folder.exists() && streams.is_empty() {
         bail!(
-            "'{}' holds the originals of an earlier --in-place: take that back first (joulepath \
+            "'{}' holds the originals of an earlier --in-place: undo that first (joulepath \
              optimize {} --undo), or move the folder away to keep its changes",
             folder.display(),
             root.display()
@@ -88,7 +87,7 @@ pub fn plan<'a>(
     let mut folders = Vec::new();
     let mut kept: Vec<(PathBuf, Cow<'_, [u8]>)> = Vec::new();
     for change in changes {
-        let path = below(&root, &change.path)?;
+        let path = relative_path(&root, &change.path)?;
         let kind = if let Some(before) = &change.before {
             kept.push((Path::new(ORIGINALS).join(&path), before.into()));
             Kind::Changed
@@ -99,10 +98,14 @@ pub fn plan<'a>(
                     change.path.display()
                 );
             }
-            made(&root, &path, &mut folders);
+            add_missing_folders(&root, &path, &mut folders);
             Kind::Added
         };
-        files.push(Entry { path: shown(&path), change: kind, sha256: checksum(&change.after) });
+        files.push(Entry {
+            path: with_slashes(&path),
+            change: kind,
+            sha256: checksum(&change.after),
+        });
     }
     let manifest = serde_json::to_vec_pretty(&Manifest { version: VERSION, files, folders })?;
     kept.push((MANIFEST.into(), manifest.into()));
@@ -111,17 +114,12 @@ pub fn plan<'a>(
 
 impl Plan<'_> {
     /// Writes the undo folder and returns its path; the program is not changed.
-    ///
-    /// # Errors
-    /// It cannot be written.
-    pub fn write(&self) -> anyhow::Result<PathBuf> {
+    pub(super) fn write(&self) -> anyhow::Result<PathBuf> {
         if self.folder.exists() {
             fs::remove_dir_all(&self.folder)
                 .with_context(|| format!("cannot replace '{}'", self.folder.display()))?;
         }
-        let files: Vec<(PathBuf, &[u8])> =
-            self.files.iter().map(|(path, bytes)| (path.clone(), bytes.as_ref())).collect();
-        output::write_folder(&self.folder, &files)?;
+        output::write_folder(&self.folder, self.files.iter().map(|(path, bytes)| (path, bytes)))?;
         Ok(self.folder.clone())
     }
 }
@@ -130,10 +128,10 @@ impl Plan<'_> {
 ///
 /// # Errors
 /// There is nothing to undo, or a file was edited since.
-pub fn undo(path: &Path) -> anyhow::Result<Vec<String>> {
-    let absolute = real(path)?;
+pub(super) fn undo(path: &Path) -> anyhow::Result<Vec<String>> {
+    let absolute = canonical(path)?;
     let found = absolute.ancestors().find_map(|root| {
-        let folder = beside(root).ok()?;
+        let folder = undo_folder(root).ok()?;
         folder.join(MANIFEST).is_file().then(|| (root.to_owned(), folder))
     });
     let Some((root, folder)) = found else {
@@ -220,7 +218,7 @@ fn read(folder: &Path) -> anyhow::Result<Manifest> {
 }
 
 /// The undo folder of a program's folder.
-fn beside(root: &Path) -> anyhow::Result<PathBuf> {
+fn undo_folder(root: &Path) -> anyhow::Result<PathBuf> {
     let name = root.file_name().with_context(|| {
         format!("'{}' has no folder beside it: move the program into a folder", root.display())
     })?;
@@ -230,13 +228,13 @@ fn beside(root: &Path) -> anyhow::Result<PathBuf> {
 }
 
 /// The path of a file relative to the program's folder. The file may be a link.
-fn below(root: &Path, path: &Path) -> anyhow::Result<PathBuf> {
+fn relative_path(root: &Path, path: &Path) -> anyhow::Result<PathBuf> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     let folder = folder.unwrap_or(Path::new("."));
     // A missing folder is created under this name.
     let known = folder.ancestors().find(|folder| folder.exists()).unwrap_or(Path::new("."));
     let rest = folder.strip_prefix(known).unwrap_or(Path::new(""));
-    let absolute = real(known)?.join(rest).join(path.file_name().unwrap_or_default());
+    let absolute = canonical(known)?.join(rest).join(path.file_name().unwrap_or_default());
     let relative = absolute.strip_prefix(root).with_context(|| {
         format!(
             "'{}' does not lie below '{}': name the folder that holds the whole program",
@@ -248,28 +246,25 @@ fn below(root: &Path, path: &Path) -> anyhow::Result<PathBuf> {
 }
 
 /// Adds the missing folders that a new file needs.
-fn made(root: &Path, path: &Path, folders: &mut Vec<String>) {
+fn add_missing_folders(root: &Path, path: &Path, folders: &mut Vec<String>) {
     let needed: Vec<&Path> = path.ancestors().skip(1).collect();
     for folder in needed.into_iter().rev() {
-        let name = shown(folder);
+        let name = with_slashes(folder);
         if !name.is_empty() && !root.join(folder).exists() && !folders.contains(&name) {
             folders.push(name);
         }
     }
 }
 
-fn real(path: &Path) -> anyhow::Result<PathBuf> {
+fn canonical(path: &Path) -> anyhow::Result<PathBuf> {
     path.canonicalize().with_context(|| format!("cannot find '{}'; check the path", path.display()))
 }
 
-fn shown(path: &Path) -> String {
+fn with_slashes(path: &Path) -> String {
     let parts: Vec<_> = path.components().map(|part| part.as_os_str().to_string_lossy()).collect();
     parts.join("/")
 }
 
 fn checksum(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().fold(String::new(), |mut text, byte| {
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
+    format!("{:x}", Sha256::digest(bytes))
 }

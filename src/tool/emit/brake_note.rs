@@ -31,7 +31,5 @@ pub fn brake_note(
     context.insert("robot", robot);
     context.insert("dwells", dwells);
     context.insert("break_even", break_even);
-    let mut tera = Tera::default();
-    tera.add_raw_template("brakes", include_str!("../../../templates/brakes.txt.tera"))?;
-    tera.render("brakes", &context)
+    Tera::one_off(include_str!("../../../templates/brakes.txt.tera"), &context, false)
 }

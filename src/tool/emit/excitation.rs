@@ -5,6 +5,8 @@ use tera::{Context, Tera};
 
 use crate::rapid::ir::number::{TIME_DECIMALS, joints, number};
 
+const MOTION_TEMPLATE: &str = include_str!("../../../templates/excitation.mod.tera");
+const LOGGER_TEMPLATE: &str = include_str!("../../../templates/excitation_logger.mod.tera");
 /// Prefix of all declared names.
 const PREFIX: &str = "jpExcite";
 /// Names of the motion task, the mechanical unit and the synchronisation signal on the controller.
@@ -15,7 +17,7 @@ const RATIO_DECIMALS: usize = 5;
 /// Interval of the logger \[s\]: the shortest of test signals.
 pub(super) const INTERVAL: f64 = 0.004;
 /// Maximum number of logger rows: limited by the size of a RAPID array in a task's memory.
-const MOST_ROWS: usize = 30_000;
+const MAX_ROWS: usize = 30_000;
 
 /// Points of one part of the motion, in their order.
 #[derive(Clone, Debug)]
@@ -69,15 +71,6 @@ pub struct Excitation {
     pub torques: LoggedTorques,
 }
 
-/// The two modules.
-#[derive(Clone, Debug)]
-pub struct ExcitationModules {
-    /// File name and text of the motion.
-    pub motion: (String, String),
-    /// File name and text of the logger.
-    pub logger: (String, String),
-}
-
 #[derive(Serialize)]
 struct List {
     what: &'static str,
@@ -86,16 +79,11 @@ struct List {
     points: Vec<String>,
 }
 
-/// Renders the modules of an excitation.
+/// File names and texts of the motion module and of its logger.
 ///
 /// # Errors
 /// A template does not fit its data.
-pub fn excitation(of: &Excitation) -> Result<ExcitationModules, tera::Error> {
-    let mut tera = Tera::default();
-    tera.add_raw_templates(vec![
-        ("motion", include_str!("../../../templates/excitation.mod.tera")),
-        ("logger", include_str!("../../../templates/excitation_logger.mod.tera")),
-    ])?;
+pub fn excitation(of: &Excitation) -> Result<[(String, String); 2], tera::Error> {
     let lists: Vec<List> = of
         .lists
         .iter()
@@ -114,7 +102,7 @@ pub fn excitation(of: &Excitation) -> Result<ExcitationModules, tera::Error> {
         .sum();
     let duration = of.spacing * count as f64 + 3.0;
     // A long motion is logged at a longer interval instead of being cut off.
-    let every = (duration / MOST_ROWS as f64 / INTERVAL).ceil().max(1.0);
+    let every = (duration / MAX_ROWS as f64 / INTERVAL).ceil().max(1.0);
     let interval = INTERVAL * every;
     let rows = (duration / interval).ceil() as usize;
     let (motion, logger) = ("JoulepathExcitation", "JoulepathLogger");
@@ -131,7 +119,7 @@ pub fn excitation(of: &Excitation) -> Result<ExcitationModules, tera::Error> {
     context.insert("stop", &joints(&of.stop));
     context.insert("lists", &lists);
     context.insert("tool", "tool0");
-    let motion_text = tera.render("motion", &context)?;
+    let motion_text = Tera::one_off(MOTION_TEMPLATE, &context, false)?;
     context.insert("module", logger);
     context.insert("motion", motion);
     context.insert("task", TASK);
@@ -153,9 +141,6 @@ pub fn excitation(of: &Excitation) -> Result<ExcitationModules, tera::Error> {
             context.insert("coupling", &coupled.then(|| number(*coupling, RATIO_DECIMALS)));
         }
     }
-    let logger_text = tera.render("logger", &context)?;
-    Ok(ExcitationModules {
-        motion: (format!("{motion}.mod"), motion_text),
-        logger: (format!("{logger}.mod"), logger_text),
-    })
+    let logger_text = Tera::one_off(LOGGER_TEMPLATE, &context, false)?;
+    Ok([(format!("{motion}.mod"), motion_text), (format!("{logger}.mod"), logger_text)])
 }

@@ -24,7 +24,7 @@ pub struct GeneratedNames {
 
 impl GeneratedNames {
     /// Names derived from a file name.
-    pub fn of(file: &str) -> GeneratedNames {
+    pub fn from_file_name(file: &str) -> GeneratedNames {
         let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
         let mut name: String = file.chars().map(plain).collect();
         if !name.starts_with(|c: char| c.is_ascii_alphabetic()) {
@@ -146,7 +146,7 @@ mod tests {
     #[test]
     fn names_are_rapids_whatever_the_file_is_called() {
         for file in ["points", "2 Teile (größer)", "", "a_very_long_name_of_a_file_with_points"] {
-            let names = GeneratedNames::of(file);
+            let names = GeneratedNames::from_file_name(file);
             for name in [&names.module, &names.procedure, &names.main] {
                 assert!(name.len() <= LONGEST_NAME, "{name}");
                 assert!(name.starts_with(|c: char| c.is_ascii_alphabetic()), "{name}");

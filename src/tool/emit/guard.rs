@@ -5,7 +5,6 @@ use std::collections::BTreeSet;
 use serde::Serialize;
 use tera::{Context, Tera};
 
-use super::names::Names;
 use super::site::{EmitError, Parameter, Recorded, Site};
 use crate::rapid::ir::number::number;
 use crate::rapid::text::{Charset, Edit, SourceFile, Span};
@@ -35,20 +34,11 @@ pub(super) struct Guard {
     pub(super) origin: String,
     /// The same, short enough for a line of the `FlexPendant`.
     pub(super) label: String,
-    number: String,
-    /// The record type of the compared values.
-    record: String,
-    fits: String,
-    run: String,
-    tell: String,
+    index: usize,
     tool: String,
     parts: Vec<PartText>,
-    /// Number of streams, plain and in the braces of a declaration.
-    ways: String,
-    count: String,
-    /// Arrays of the start positions and of the expected values.
-    from: String,
-    made: String,
+    /// Number of streams.
+    variants: usize,
     /// Arguments of the function that checks the settings.
     settings: String,
     external: bool,
@@ -74,20 +64,11 @@ struct PartText {
 #[derive(Serialize)]
 pub(super) struct TypeText {
     name: &'static str,
-    parts: Vec<ComponentText>,
+    /// Its components whose text is short enough for a string; empty if its own text is.
+    parts: &'static [&'static str],
 }
 
-/// A part of a datum that fits into a message.
-#[derive(Serialize)]
-struct ComponentText {
-    /// Suffix of the datum's name.
-    dotted: String,
-    /// Text in messages.
-    said: String,
-}
-
-pub(super) fn guard(site: &Site, names: &Names, recorded: &Recorded, index: usize) -> Guard {
-    let prefix = &names.prefix;
+pub(super) fn guard(site: &Site, prefix: &str, recorded: &Recorded, index: usize) -> Guard {
     let parts: Vec<PartText> = site
         .parameters
         .iter()
@@ -99,16 +80,9 @@ pub(super) fn guard(site: &Site, names: &Names, recorded: &Recorded, index: usiz
     Guard {
         label: shortened(&site.origin),
         origin: site.origin.clone(),
-        number: index.to_string(),
-        record: format!("{prefix}Data{index}"),
-        fits: format!("{prefix}Fits{index}"),
-        run: format!("{prefix}Run{index}"),
-        tell: format!("{prefix}Tell{index}"),
+        index,
         tool: site.tool.clone(),
-        ways: site.streams.len().to_string(),
-        count: format!("{{{}}}", site.streams.len()),
-        from: format!("{prefix}From{index}"),
-        made: format!("{prefix}Made{index}"),
+        variants: site.streams.len(),
         instructions: instructions(site, recorded),
         parts,
         settings: format!(
@@ -147,20 +121,9 @@ fn part(parameter: &Parameter, prefix: &str, name: String) -> PartText {
 pub(super) fn types(guards: &[&Guard]) -> Vec<TypeText> {
     let parts = guards.iter().flat_map(|guard| &guard.parts);
     let names: BTreeSet<&'static str> = parts.map(|part| part.r#type).collect();
-    let text = |name: &'static str| TypeText {
-        name,
-        parts: components(name)
-            .iter()
-            .map(|part| match *part {
-                "" => ComponentText { dotted: String::new(), said: String::new() },
-                part => ComponentText { dotted: format!(".{part}"), said: format!(" {part}") },
-            })
-            .collect(),
-    };
-    names.into_iter().map(text).collect()
+    names.into_iter().map(|name| TypeText { name, parts: components(name) }).collect()
 }
 
-/// The parts of a type whose text is short enough for a string.
 fn components(type_name: &str) -> &'static [&'static str] {
     match type_name {
         "robtarget" => &["trans", "rot", "robconf", "extax"],
@@ -186,7 +149,7 @@ fn components(type_name: &str) -> &'static [&'static str] {
             "oframe.rot",
         ],
         "loaddata" => &["mass", "cog", "aom", "ix", "iy", "iz"],
-        _ => &[""],
+        _ => &[],
     }
 }
 
@@ -198,14 +161,14 @@ fn escaped(text: &str) -> String {
 /// Number of instructions of a site's guard in a cycle. The search for the variant starts after the
 /// last one and is cyclic.
 fn instructions(site: &Site, recorded: &Recorded) -> usize {
-    let ways = site.streams.len();
+    let variants = site.streams.len();
     let rounded = site.parameters.iter().filter(|parameter| parameter.is_computed).count();
     let each = EACH + ROUNDED * rounded;
-    let mut last = ways - 1;
-    let run = |way: &Option<usize>| {
-        let Some(way) = *way else { return ways * each };
-        let looked_at = (way + ways - last - 1) % ways + 1;
-        last = way;
+    let mut last = variants - 1;
+    let run = |variant: &Option<usize>| {
+        let Some(variant) = *variant else { return variants * each };
+        let looked_at = (variant + variants - last - 1) % variants + 1;
+        last = variant;
         looked_at * each + LEAD
     };
     let looks: usize = site.order.iter().map(run).sum();
@@ -221,21 +184,18 @@ fn shortened(origin: &str) -> String {
 /// The insertions before and after the statements of a site.
 pub(super) fn insertions(
     tera: &Tera,
-    file: &SourceFile,
-    charset: Charset,
-    site: &Site,
+    prefix: &str,
+    (file, charset): (&SourceFile, Charset),
+    span: Span,
     guard: &Guard,
 ) -> Result<[Edit; 2], EmitError> {
-    let span = site.span;
     let before = &file.bytes[..span.start as usize];
-    let line = before.iter().rposition(|b| *b == b'\n' || *b == b'\r').map_or(0, |i| i + 1);
-    let indent: String = before[line..]
-        .iter()
-        .take_while(|b| matches!(b, b' ' | b'\t'))
-        .map(|b| char::from(*b))
-        .collect();
+    let line = before.rsplit(|b| matches!(b, b'\n' | b'\r')).next().unwrap_or_default();
+    let blank = line.iter().take_while(|b| matches!(b, b' ' | b'\t'));
+    let indent: String = blank.map(|b| char::from(*b)).collect();
     let end_of_line = end_of_line(&file.bytes);
     let mut context = Context::new();
+    context.insert("p", prefix);
     context.insert("indent", &indent);
     context.insert("guard", guard);
     let arguments = guard.parts.iter().map(|part| part.text.as_str()).filter(|t| !t.is_empty());
@@ -290,7 +250,7 @@ mod tests {
 
     /// The search starts with the stream after the last one, so each costs one comparison in order.
     #[test]
-    fn ways_in_their_order_cost_one_look() {
+    fn variants_in_their_order_cost_one_look() {
         let stream = EmittedStream {
             start: [0.0; 6],
             points: Vec::new(),

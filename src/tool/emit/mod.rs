@@ -14,14 +14,14 @@ mod stream_module;
 mod stream_test;
 
 pub use brake_note::{BrakeDwell, brake_note};
-pub use excitation::{Excitation, ExcitationModules, LoggedTorques, Points, excitation};
+pub use excitation::{Excitation, LoggedTorques, Points, excitation};
 pub use generated::{
     EGM_STEP_S, GeneratedMove, GeneratedNames, egm_module, egm_rows, generated_module, jointtarget,
     main_module, stream_time,
 };
 pub use guard::{EDIT_REMARK, end_of_line};
 pub use layout::Layout;
-pub use names::{Names, has_streams, missing_streams, own_name};
+pub use names::{Names, has_streams, missing_streams, redeclared_name};
 pub use site::{
     EmitError, Emitted, EmittedStream, MotionSettings, Parameter, Pause, Recorded, Robot, Site,
 };

@@ -22,7 +22,7 @@ impl Names {
     /// A prefix that no word of the files begins with: data, routines, labels, loop variables, also
     /// signals and modules declared elsewhere. The module name differs from all file names.
     pub fn free(files: &[SourceFile]) -> Names {
-        let taken = taken(files);
+        let taken = used_words(files);
         let is_free = |beginning: &str| {
             let beginning = beginning.to_lowercase();
             let next = taken.range(beginning.clone()..).next();
@@ -66,13 +66,13 @@ pub fn missing_streams(program: &Program) -> Option<MissingStreams> {
 pub fn has_streams(program: &Program) -> bool {
     program.modules.iter().any(|module| {
         let ours = module.name.key.starts_with(&module_name(1).to_lowercase());
-        let is_at = |routine: &Routine| round_of(&routine.name.key).is_some();
+        let is_at = |routine: &Routine| prefix_number(&routine.name.key).is_some();
         ours && (module.name.key.contains("egm") || module.routines.iter().any(is_at))
     })
 }
 
 /// The first predefined name that streams use and the program redeclares.
-pub fn own_name(program: &Program) -> Option<&'static str> {
+pub fn redeclared_name(program: &Program) -> Option<&'static str> {
     USED.into_iter().find(|name| program.resolve_global(&name.to_lowercase()).is_some())
 }
 
@@ -108,7 +108,7 @@ fn guard(program: &Program, module: usize, block: &Block) -> Option<MissingStrea
     block.iter().find_map(|stmt| {
         if let StmtKind::If { branches, .. } = &stmt.kind
             && let Some(ExprKind::Call(name, _)) = branches.first().map(|(c, _)| &c.kind)
-            && let Some(round) = round_of(&name.key)
+            && let Some(round) = prefix_number(&name.key)
             && program.resolve(module, &name.key).is_none()
         {
             return Some(MissingStreams {
@@ -122,7 +122,7 @@ fn guard(program: &Program, module: usize, block: &Block) -> Option<MissingStrea
 }
 
 /// The number in the prefix of a guard function's lower-case name; 1 without a number.
-fn round_of(key: &str) -> Option<usize> {
+fn prefix_number(key: &str) -> Option<usize> {
     let (round, site) = key.strip_prefix("jp")?.split_once("fits")?;
     site.parse::<usize>().ok()?;
     match round {
@@ -136,7 +136,7 @@ fn module_name(round: usize) -> String {
 }
 
 /// All words and file names, in lower case.
-fn taken(files: &[SourceFile]) -> BTreeSet<String> {
+fn used_words(files: &[SourceFile]) -> BTreeSet<String> {
     let mut taken = BTreeSet::new();
     for file in files {
         let name = file.path.rsplit(['/', '\\']).next().unwrap_or(&file.path);

@@ -39,22 +39,16 @@ struct StreamText {
     origin: String,
     before: String,
     after: String,
-    proc_name: String,
+    /// Numbers of its site and of itself: the end of its names.
+    index: String,
     start: String,
     made: Vec<String>,
     points: Vec<PointText>,
-    array: Option<ArrayText>,
-}
-
-/// Additional text of a stream from arrays.
-#[derive(Serialize)]
-struct ArrayText {
-    points: String,
-    times: String,
-    /// The number of points in the braces of an index.
-    last: String,
-    /// The number of the last point but one.
-    fly_by: String,
+    /// Whether its points are arrays.
+    is_array: bool,
+    /// The number of points, and of those before the last.
+    count: usize,
+    fly_by: usize,
 }
 
 #[derive(Serialize)]
@@ -73,28 +67,28 @@ struct SiteText {
 }
 
 /// The input of an emission.
-pub struct Emission<'a> {
+pub struct Emission {
     /// The original files.
-    pub files: &'a [SourceFile],
+    pub files: Vec<SourceFile>,
     /// Unused names.
-    pub names: &'a Names,
+    pub names: Names,
     /// Layout of the points.
     pub layout: Layout,
     /// The robot.
-    pub robot: &'a Robot,
+    pub robot: Robot,
     /// The operator's speed override for the streams, %.
     pub override_percent: f64,
     /// The states that the program records for guards.
-    pub recorded: &'a Recorded,
+    pub recorded: Recorded,
     /// A hash that identifies the original.
-    pub program: &'a str,
+    pub program: String,
 }
 
 /// Renders the streams of the sites.
 ///
 /// # Errors
 /// A value has no RAPID text.
-pub fn emit(emission: &Emission<'_>, sites: &[Site]) -> Result<Emitted, EmitError> {
+pub fn emit(emission: &Emission, sites: &[Site]) -> Result<Emitted, EmitError> {
     let Emission { files, names, robot, recorded, .. } = emission;
     let mut tera = Tera::default();
     tera.add_raw_templates(vec![
@@ -107,21 +101,24 @@ pub fn emit(emission: &Emission<'_>, sites: &[Site]) -> Result<Emitted, EmitErro
     let mut edits = recorded.edits.clone();
     let mut instructions = Vec::new();
     for (index, site) in sites.iter().enumerate() {
-        let guard = guard(site, names, recorded, index + 1);
+        let guard = guard(site, &names.prefix, recorded, index + 1);
         let streams: Result<Vec<StreamText>, EmitError> = site
             .streams
             .iter()
             .enumerate()
-            .map(|(way, stream)| stream_text(emission, site, stream, (index + 1, way + 1)))
+            .map(|(variant, stream)| {
+                stream_text(emission, site, stream, format!("{}_{}", index + 1, variant + 1))
+            })
             .collect();
         let file = site.span.file.0 as usize;
-        edits.extend(insertions(&tera, &files[file], charsets[file], site, &guard)?);
+        let source = (&files[file], charsets[file]);
+        edits.extend(insertions(&tera, &names.prefix, source, site.span, &guard)?);
         instructions.push(guard.instructions);
         texts.push(SiteText { guard, streams: streams? });
     }
     let mut context = Context::new();
     context.insert("version", env!("CARGO_PKG_VERSION"));
-    context.insert("program", emission.program);
+    context.insert("program", &emission.program);
     context.insert("p", &names.prefix);
     context.insert("robot", &robot.kind);
     context.insert("override", &number(emission.override_percent, 6));
@@ -137,7 +134,7 @@ pub fn emit(emission: &Emission<'_>, sites: &[Site]) -> Result<Emitted, EmitErro
     context.insert("external", &sites.iter().any(Site::has_external));
     context.insert("switches", &recorded.switches);
     context.insert("load", &recorded.load);
-    context.insert("count", &sites.len().to_string());
+    context.insert("count", &sites.len());
     let list = |text: &dyn Fn(&SiteText) -> String| texts.iter().map(text).collect::<Vec<_>>();
     context.insert("labels", &list(&|site| format!("\"{}\"", site.guard.label)).join(","));
     context.insert("zeros", &list(&|_| "0".to_owned()).join(","));
@@ -161,25 +158,17 @@ pub fn emit(emission: &Emission<'_>, sites: &[Site]) -> Result<Emitted, EmitErro
 }
 
 fn stream_text(
-    emission: &Emission<'_>,
+    emission: &Emission,
     site: &Site,
     stream: &EmittedStream,
-    (number_of_site, way): (usize, usize),
+    index: String,
 ) -> Result<StreamText, EmitError> {
-    let prefix = &emission.names.prefix;
-    let index = format!("{number_of_site}_{way}");
     let made = site.parameters.iter().zip(&stream.values).map(|(parameter, value)| {
         super::literal::literal(value).ok_or_else(|| EmitError::Value(parameter.label.clone()))
     });
     let count = stream.points.len();
     let last = count.saturating_sub(1);
     let external = stream.external.map(external_axis).join(",");
-    let array = (stream.pause.is_none() && emission.layout.is_array(count)).then(|| ArrayText {
-        points: format!("{prefix}Points{index}"),
-        times: format!("{prefix}Times{index}"),
-        last: format!("{{{count}}}"),
-        fly_by: last.to_string(),
-    });
     let points = stream
         .points
         .iter()
@@ -201,9 +190,11 @@ fn stream_text(
         after: stream.after.clone(),
         start: format!("[[{}],[{external}]]", joints(&stream.start)),
         made: made.collect::<Result<_, _>>()?,
-        proc_name: format!("{prefix}Move{index}"),
+        index,
         points,
-        array,
+        is_array: stream.pause.is_none() && emission.layout.is_array(count),
+        count,
+        fly_by: last,
     })
 }
 

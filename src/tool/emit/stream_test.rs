@@ -6,6 +6,8 @@ use tera::{Context, Tera};
 use super::excitation::{INTERVAL, TASK};
 use crate::rapid::ir::number::{TIME_DECIMALS, joints, number};
 
+const MOTION_TEMPLATE: &str = include_str!("../../../templates/streamtest.mod.tera");
+const LOGGER_TEMPLATE: &str = include_str!("../../../templates/streamtest_logger.mod.tera");
 /// Prefix of all declared names.
 const PREFIX: &str = "jpTest";
 const LOG: &str = "streamtest_log.csv";
@@ -42,11 +44,6 @@ pub fn stream_test(
     robot: &str,
     streams: &[TestStream<'_>],
 ) -> Result<[(String, String); 2], tera::Error> {
-    let mut tera = Tera::default();
-    tera.add_raw_templates(vec![
-        ("motion", include_str!("../../../templates/streamtest.mod.tera")),
-        ("logger", include_str!("../../../templates/streamtest_logger.mod.tera")),
-    ])?;
     let (motion, logger) = ("JoulepathTest", "JoulepathTestLogger");
     let start = streams.first().map(|stream| joints(stream.start)).unwrap_or_default();
     let of_point = |stream: &TestStream<'_>, q: &[f64; 6]| {
@@ -75,7 +72,7 @@ pub fn stream_test(
     context.insert("start", &start);
     context.insert("tests", &tests);
     context.insert("module", motion);
-    let motion_text = tera.render("motion", &context)?;
+    let motion_text = Tera::one_off(MOTION_TEMPLATE, &context, false)?;
     context.insert("module", logger);
     context.insert("motion", motion);
     context.insert("task", TASK);
@@ -83,6 +80,6 @@ pub fn stream_test(
     context.insert("rows", &((duration + MORE) / INTERVAL).ceil().to_string());
     context.insert("interval", &number(INTERVAL, TIME_DECIMALS));
     context.insert("joints", &["1", "2", "3", "4", "5", "6"]);
-    let logger_text = tera.render("logger", &context)?;
+    let logger_text = Tera::one_off(LOGGER_TEMPLATE, &context, false)?;
     Ok([(format!("{motion}.mod"), motion_text), (format!("{logger}.mod"), logger_text)])
 }

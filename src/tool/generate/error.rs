@@ -1,7 +1,6 @@
 //! Errors of the generation.
 
-use super::follow::FollowError;
-use super::moves::MovesError;
+use crate::arm::kinematics::{IkError, LimitViolation};
 use crate::tool::emit::EmitError;
 
 /// Errors of the generation.
@@ -23,16 +22,70 @@ pub enum GenerateError {
         "a timed trajectory becomes joint targets: give --as absj or egm, or leave out the column t"
     )]
     TimedPoses,
-    /// The trajectory cannot be followed.
-    #[error(transparent)]
-    Follow(#[from] FollowError),
-    /// A point cannot be reached.
-    #[error(transparent)]
-    Moves(#[from] MovesError),
+    /// A position is out of range.
+    #[error("row {row}: {violation}; if the columns are degrees, name them q1_deg … q6_deg")]
+    Range {
+        /// Line of the file.
+        row: usize,
+        /// The violated limit.
+        violation: LimitViolation,
+    },
+    /// A pose is out of reach, or not reachable in this configuration.
+    #[error("row {row}: {error}")]
+    Pose {
+        /// Line of the file.
+        row: usize,
+        /// Why.
+        error: IkError,
+    },
+    /// A name is not predefined in RAPID.
+    #[error("row {row}: '{name}' is not a predefined {what} of RAPID; give {example}, or a number")]
+    Name {
+        /// Line of the file.
+        row: usize,
+        /// As given.
+        name: String,
+        /// `speed` or `zone`.
+        what: &'static str,
+        /// Valid names.
+        example: &'static str,
+    },
+    /// A trajectory does not start or end at rest.
+    #[error(
+        "the trajectory {end} with {speed:.3} rad/s in joint {joint}; a program starts and ends at \
+         rest: add a ramp"
+    )]
+    Moving {
+        /// `starts` or `ends`.
+        end: &'static str,
+        /// From 1.
+        joint: usize,
+        /// rad/s.
+        speed: f64,
+    },
+    /// A trajectory exceeds a limit.
+    #[error("the trajectory can't be followed: {what}; make it {factor:.2} times as long or more")]
+    TooFast {
+        /// The exceeded limit.
+        what: String,
+        /// Minimum stretch of its times.
+        factor: f64,
+    },
+    /// The point spacing is too coarse.
+    #[error(
+        "with points {spacing} s apart the robot would be {distance_mm:.2} mm from the trajectory; \
+         give a smaller --spacing, or a smoother trajectory"
+    )]
+    Coarse {
+        /// s.
+        spacing: f64,
+        /// mm.
+        distance_mm: f64,
+    },
     /// A template failed.
     #[error(transparent)]
     Emit(#[from] EmitError),
     /// The emitted text fails its verification.
-    #[error("nothing is written, as the emitted program did not hold: {0}")]
+    #[error("the generated program failed its verification, and nothing is written: {0}")]
     Verification(String),
 }

@@ -1,11 +1,12 @@
 //! The use of limits by a motion.
 
-use crate::arm::dynamics::Load;
+use crate::arm::dynamics::{Data, Load};
 use crate::arm::kinematics::{fk, jacobian, limits_ok};
 use crate::arm::robot::Model;
 use crate::retime::energy::power::power;
 use crate::retime::motion::timed::JointState;
 use crate::retime::path::joint_path::Joints;
+use crate::tool::retrofit::largest_share;
 use nalgebra::{Isometry3, Vector6};
 
 /// Shares of the limits that a motion uses.
@@ -27,24 +28,14 @@ pub struct Measure {
 
 impl Measure {
     /// Adds a state without load at the flange.
-    pub(super) fn add(
-        &mut self,
-        model: &Model,
-        data: &mut crate::arm::dynamics::Data,
-        state: &JointState,
-    ) {
+    pub(super) fn add(&mut self, model: &Model, data: &mut Data, state: &JointState) {
         let limits = &model.limits;
-        let share = |values: &[f64], limit: &Option<Vec<f64>>| {
-            limit.as_ref().map_or(0.0, |limit| {
-                values.iter().zip(limit).map(|(x, most)| x.abs() / most).fold(0.0, f64::max)
-            })
-        };
-        self.velocity = self.velocity.max(share(&state.qd, &limits.velocity));
-        self.acceleration = self.acceleration.max(share(&state.qdd, &limits.acceleration));
+        self.velocity = self.velocity.max(largest_share(&state.qd, &limits.velocity));
+        self.acceleration = self.acceleration.max(largest_share(&state.qdd, &limits.acceleration));
         self.out_of_range |= limits_ok(model, &state.q).is_err();
         if model.has_dynamics() {
             let tau = power(model, data, &Load::none(), state).tau;
-            self.torque = self.torque.max(share(&tau, &limits.torque));
+            self.torque = self.torque.max(largest_share(&tau, &limits.torque));
         }
         if let Some(limit) = limits.tcp_speed {
             let rate = jacobian(model, &state.q, &Isometry3::identity()) * Vector6::from(state.qd);
@@ -53,14 +44,14 @@ impl Measure {
     }
 
     /// Adds the distance between a position and the intended one.
-    pub(super) fn stray(&mut self, model: &Model, q: &Joints, intended: &Joints) {
+    pub(super) fn add_deviation(&mut self, model: &Model, q: &Joints, intended: &Joints) {
         let distance =
             (fk(model, q).translation.vector - fk(model, intended).translation.vector).norm();
         self.deviation_m = self.deviation_m.max(distance);
     }
 
     /// The exceeded limit in words.
-    pub(super) fn fault(&self) -> Option<String> {
+    pub(super) fn exceeded_limit(&self) -> Option<String> {
         let figures = [
             ("joint speed", self.velocity),
             ("joint acceleration", self.acceleration),

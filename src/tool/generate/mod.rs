@@ -9,9 +9,7 @@ mod settings;
 pub mod table;
 
 pub use error::GenerateError;
-pub use follow::FollowError;
 pub use measure::Measure;
-pub use moves::MovesError;
 pub use settings::{Form, Settings};
 
 use crate::arm::robot::Model;
@@ -59,7 +57,7 @@ pub fn generate(
                 .into(),
         ));
     }
-    let names = GeneratedNames::of(&settings.name);
+    let names = GeneratedNames::from_file_name(&settings.name);
     let mut notes = table.notes.clone();
     if !model.has_dynamics() || model.limits.torque.is_none() {
         notes.push(format!(

@@ -2,11 +2,10 @@
 
 use nalgebra::Isometry3;
 
+use super::error::GenerateError;
 use super::settings::Form;
-use super::table::{Amount, Points, Table};
-use crate::arm::kinematics::{
-    Conf, IkError, LimitViolation, conf_of, fk, ik_conf, ik_near, limits_ok,
-};
+use super::table::{Points, SpeedOrZone, Table};
+use crate::arm::kinematics::{Conf, conf_of, fk, ik_conf, ik_near, limits_ok};
 use crate::arm::robot::Model;
 use crate::rapid::ir::number::number;
 use crate::rapid::ir::predefined::lookup;
@@ -36,59 +35,26 @@ pub(super) struct Target {
     pub(super) zone: String,
 }
 
-/// Why a point cannot be a target.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum MovesError {
-    /// A joint is out of range.
-    #[error("row {row}: {violation}; if the columns are degrees, name them q1_deg … q6_deg")]
-    Range {
-        /// Line of the file.
-        row: usize,
-        /// The violated limit.
-        violation: LimitViolation,
-    },
-    /// The pose is out of reach, or not reachable in this configuration.
-    #[error("row {row}: {error}")]
-    Pose {
-        /// Line of the file.
-        row: usize,
-        /// Why.
-        error: IkError,
-    },
-    /// The name is not predefined in RAPID.
-    #[error("row {row}: '{name}' is no {what} of RAPID's own; give {example}, or a number")]
-    Name {
-        /// Line of the file.
-        row: usize,
-        /// As given.
-        name: String,
-        /// `speed` or `zone`.
-        what: &'static str,
-        /// Valid names.
-        example: &'static str,
-    },
-}
-
 /// The movements to the points of a table without times.
-pub(super) fn moves(model: &Model, table: &Table, form: Form) -> Result<Moves, MovesError> {
+pub(super) fn moves(model: &Model, table: &Table, form: Form) -> Result<Moves, GenerateError> {
     let positions = match &table.points {
         Points::Trajectory(_, q) | Points::Joints(q) => q.clone(),
-        Points::Poses(poses) => solved(model, poses)?,
+        Points::Poses(poses) => joint_positions(model, poses)?,
     };
     let mut notes = Vec::new();
     let last = positions.len() - 1;
     let mut targets = Vec::with_capacity(positions.len());
     for (i, q) in positions.into_iter().enumerate() {
         let row = i + 2;
-        limits_ok(model, &q).map_err(|violation| MovesError::Range { row, violation })?;
+        limits_ok(model, &q).map_err(|violation| GenerateError::Range { row, violation })?;
         let (pose, conf) = match &table.points {
             Points::Poses(poses) => (poses[i].0, poses[i].1.unwrap_or_else(|| conf_of(model, &q))),
             _ => (fk(model, &q), conf_of(model, &q)),
         };
-        let speed = named(row, table.speeds[i].as_ref(), "speeddata", SPEED, |metres| {
+        let speed = speed_or_zone(row, table.speeds[i].as_ref(), "speeddata", SPEED, |metres| {
             format!("v1000\\V:={}", number(metres * 1e3, 3))
         })?;
-        let zone = named(row, table.zones[i].as_ref(), "zonedata", STOP, |metres| {
+        let zone = speed_or_zone(row, table.zones[i].as_ref(), "zonedata", STOP, |metres| {
             format!("z10\\Z:={}", number(metres * 1e3, 3))
         })?;
         let zone = if i == last && zone != STOP {
@@ -104,10 +70,10 @@ pub(super) fn moves(model: &Model, table: &Table, form: Form) -> Result<Moves, M
 }
 
 /// Joint positions of poses: in the given configuration, or else near the previous point.
-fn solved(
+fn joint_positions(
     model: &Model,
     poses: &[(Isometry3<f64>, Option<Conf>)],
-) -> Result<Vec<Joints>, MovesError> {
+) -> Result<Vec<Joints>, GenerateError> {
     let mut near = [0.0; DOF];
     let mut positions = Vec::with_capacity(poses.len());
     for (i, (pose, conf)) in poses.iter().enumerate() {
@@ -115,28 +81,28 @@ fn solved(
             Some(conf) => ik_conf(model, pose, *conf),
             None => ik_near(model, pose, &near),
         };
-        near = solution.map_err(|error| MovesError::Pose { row: i + 2, error })?;
+        near = solution.map_err(|error| GenerateError::Pose { row: i + 2, error })?;
         positions.push(near);
     }
     Ok(positions)
 }
 
 /// The RAPID text of a speed or zone.
-fn named(
+fn speed_or_zone(
     row: usize,
-    amount: Option<&Amount>,
+    amount: Option<&SpeedOrZone>,
     r#type: &str,
     default: &str,
     written: impl Fn(f64) -> String,
-) -> Result<String, MovesError> {
+) -> Result<String, GenerateError> {
     match amount {
         None => Ok(default.to_owned()),
-        Some(Amount::Value(metres)) => Ok(written(*metres)),
-        Some(Amount::Name(name)) => match lookup(name) {
+        Some(SpeedOrZone::Value(metres)) => Ok(written(*metres)),
+        Some(SpeedOrZone::Name(name)) => match lookup(name) {
             Some(value) if &*value.type_key == r#type => Ok(name.clone()),
             _ => {
                 let speed = r#type == "speeddata";
-                Err(MovesError::Name {
+                Err(GenerateError::Name {
                     row,
                     name: name.clone(),
                     what: if speed { "speed" } else { "zone" },

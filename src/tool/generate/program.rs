@@ -5,7 +5,7 @@ use super::follow::{self, Followed, Sampled, TOLERANCE};
 use super::measure::Measure;
 use super::moves::{Moves, Target};
 use super::settings::Form;
-use crate::arm::kinematics::limits_ok;
+use crate::arm::kinematics::{Conf, limits_ok};
 use crate::arm::robot::Model;
 use crate::rapid::ir::number::number;
 use crate::retime::motion::stream::Stream;
@@ -14,7 +14,7 @@ use crate::retime::motion::timeline::What;
 use crate::retime::motion::{Options, Simulation};
 use crate::retime::path::joint_path::DOF;
 use crate::tool::emit::{self, EmitError, GeneratedMove, GeneratedNames, jointtarget, stream_time};
-use crate::tool::retrofit::{OutputFile, parses, read_again, run_again};
+use crate::tool::retrofit::{OutputFile, file_and_line, parses, read_again, run_again};
 
 /// Maximum distance of a reached point from the requested one, rad.
 const REACHED: f64 = 1e-4;
@@ -42,7 +42,7 @@ pub(super) fn stream(
     let moves: Vec<GeneratedMove> = std::iter::once(start).chain(points).collect();
     let seconds = number(stream.duration(), 3);
     let about = format!("A trajectory of {seconds} s as a stream of {} points", last + 1);
-    complete(names, emit::generated_module(names, &about, &moves)?)
+    with_main_module(names, emit::generated_module(names, &about, &moves)?)
 }
 
 pub(super) fn moves(
@@ -50,24 +50,13 @@ pub(super) fn moves(
     moves: &Moves,
 ) -> Result<Vec<OutputFile>, GenerateError> {
     let robtarget = |target: &Target| {
-        let p = target.pose.translation.vector * 1e3;
+        let position = target.pose.translation.vector * 1e3;
         let r = target.pose.rotation;
-        let length = |x: f64| number(x, 4);
-        let part = |x: f64| number(x, 9);
-        let c = target.conf;
+        let [x, y, z] = [position.x, position.y, position.z].map(|x| number(x, 4));
+        let [w, i, j, k] = [r.w, r.i, r.j, r.k].map(|part| number(part, 9));
+        let Conf { cf1, cf4, cf6, cfx } = target.conf;
         format!(
-            "[[{},{},{}],[{},{},{},{}],[{},{},{},{}],[9E9,9E9,9E9,9E9,9E9,9E9]]",
-            length(p.x),
-            length(p.y),
-            length(p.z),
-            part(r.w),
-            part(r.i),
-            part(r.j),
-            part(r.k),
-            c.cf1,
-            c.cf4,
-            c.cf6,
-            c.cfx,
+            "[[{x},{y},{z}],[{w},{i},{j},{k}],[{cf1},{cf4},{cf6},{cfx}],[9E9,9E9,9E9,9E9,9E9,9E9]]"
         )
     };
     let list: Vec<GeneratedMove> = moves
@@ -91,7 +80,7 @@ pub(super) fn moves(
         })
         .collect();
     let about = format!("{} points", list.len());
-    complete(names, emit::generated_module(names, &about, &list)?)
+    with_main_module(names, emit::generated_module(names, &about, &list)?)
 }
 
 /// Positions for externally guided motion, with their module.
@@ -101,14 +90,17 @@ pub(super) fn egm(
 ) -> Result<Vec<OutputFile>, GenerateError> {
     let text = emit::egm_rows(&sampled.positions);
     let module = emit::egm_module(names, &sampled.positions, "tool0", "wobj0")?;
-    let mut outputs = complete(names, module)?;
+    let mut outputs = with_main_module(names, module)?;
     outputs.push(OutputFile::added(format!("{}.csv", names.module), text));
     check_text(&outputs[..2])?;
     Ok(outputs)
 }
 
 /// The module, and the module with the entry routine.
-fn complete(names: &GeneratedNames, module: String) -> Result<Vec<OutputFile>, GenerateError> {
+fn with_main_module(
+    names: &GeneratedNames,
+    module: String,
+) -> Result<Vec<OutputFile>, GenerateError> {
     let main: Result<String, EmitError> = emit::main_module(names);
     Ok(vec![
         OutputFile::added(format!("{}.mod", names.module), module),
@@ -117,10 +109,10 @@ fn complete(names: &GeneratedNames, module: String) -> Result<Vec<OutputFile>, G
 }
 
 fn check_text(outputs: &[OutputFile]) -> Result<(), GenerateError> {
-    if parses(&[], outputs) { Ok(()) } else { Err(broken("the text does not parse")) }
+    if parses(&[], outputs) { Ok(()) } else { Err(unverified("the text does not parse")) }
 }
 
-fn broken(what: impl Into<String>) -> GenerateError {
+fn unverified(what: impl Into<String>) -> GenerateError {
     GenerateError::Verification(what.into())
 }
 
@@ -128,12 +120,11 @@ fn broken(what: impl Into<String>) -> GenerateError {
 fn simulated(model: &Model, outputs: &[OutputFile]) -> Result<Simulation, GenerateError> {
     check_text(outputs)?;
     let simulation = run_again(outputs, "main", model, &Options::default())
-        .map_err(|error| broken(error.to_string()))?;
+        .map_err(|error| unverified(error.to_string()))?;
     match simulation.unresolved.first() {
         Some(note) => {
-            let file = &read_again(outputs)[note.span.file.0 as usize].file;
-            let line = file.position(note.span.start).line;
-            Err(broken(format!("{}:{line}: {}", file.path, note.reason)))
+            let place = file_and_line(&read_again(outputs), note.span);
+            Err(unverified(format!("{place}: {}", note.reason)))
         }
         None => Ok(simulation),
     }
@@ -153,13 +144,13 @@ pub(super) fn verify_stream(
         },
         _ => None,
     });
-    let stream = stream.ok_or_else(|| broken("the points do not run as a stream"))?;
+    let stream = stream.ok_or_else(|| unverified("the points do not run as a stream"))?;
     let measure = follow::measure(model, stream, &followed.reference);
-    if let Some(fault) = measure.fault() {
-        return Err(broken(fault));
+    if let Some(fault) = measure.exceeded_limit() {
+        return Err(unverified(fault));
     }
     if measure.deviation_m > TOLERANCE {
-        return Err(broken("the stream strays from the trajectory"));
+        return Err(unverified("the stream strays from the trajectory"));
     }
     Ok(measure)
 }
@@ -175,12 +166,12 @@ pub(super) fn verify_moves(
     for event in &simulation.events {
         let What::Run(run) = &event.what else { continue };
         if let Some(problem) = &run.problem {
-            return Err(broken(format!("row {}: {problem}", reached + 2)));
+            return Err(unverified(format!("row {}: {problem}", reached + 2)));
         }
         for leg in &run.legs {
             let far = |j: usize| (leg.end[j] - moves.targets[reached].q[j]).abs();
             if let Some(joint) = (0..DOF).find(|j| far(*j) > REACHED) {
-                return Err(broken(format!(
+                return Err(unverified(format!(
                     "row {}: the movement would end with joint {} elsewhere; give its configuration \
                      (cf1,cf4,cf6,cfx), or another point between",
                     reached + 2,
@@ -192,11 +183,11 @@ pub(super) fn verify_moves(
         let count = (run.duration() * SAMPLES).ceil().max(1.0) as usize;
         let mut times = (0..=count).map(|i| run.duration() * i as f64 / count as f64);
         if let Some(violation) = times.find_map(|t| limits_ok(model, &run.at(t).q).err()) {
-            return Err(broken(format!("on the way to row {}: {violation}", reached + 1)));
+            return Err(unverified(format!("on the way to row {}: {violation}", reached + 1)));
         }
     }
     if reached != moves.targets.len() {
-        return Err(broken(format!("{reached} of {} points are reached", moves.targets.len())));
+        return Err(unverified(format!("{reached} of {} points are reached", moves.targets.len())));
     }
     let first = simulation.events.first().map_or(0.0, |event| match &event.what {
         What::Run(run) => run.moves.first().map_or(0.0, |first| first.duration),

@@ -21,9 +21,9 @@ pub struct Table {
     /// The points.
     pub points: Points,
     /// Programmed speed of each point, if given.
-    pub speeds: Vec<Option<Amount>>,
+    pub speeds: Vec<Option<SpeedOrZone>>,
     /// Zone of each point, if given.
-    pub zones: Vec<Option<Amount>>,
+    pub zones: Vec<Option<SpeedOrZone>>,
     /// Notes on assumed units and unused columns.
     pub notes: Vec<String>,
 }
@@ -41,7 +41,7 @@ pub enum Points {
 
 /// A speed or a zone.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Amount {
+pub enum SpeedOrZone {
     /// A RAPID name, such as v100 or fine.
     Name(String),
     /// m/s or m.
@@ -53,20 +53,14 @@ pub enum Amount {
 pub enum TableError {
     /// The columns match no kind of points.
     #[error(
-        "the header is '{header}': give the columns t,q1..q6 (a timed trajectory), q1..q6 (joint \
+        "the header is '{0}': give the columns t,q1..q6 (a timed trajectory), q1..q6 (joint \
          positions, rad; q1_deg.. for degrees) or x,y,z,w,i,j,k[,cf1,cf4,cf6,cfx] (poses), each \
          also with speed,zone"
     )]
-    Columns {
-        /// The first line.
-        header: String,
-    },
+    Columns(String),
     /// A column name occurs twice.
-    #[error("the column '{name}' stands twice in the header")]
-    Twice {
-        /// Its name.
-        name: String,
-    },
+    #[error("the column '{0}' stands twice in the header")]
+    DuplicateColumn(String),
     /// Some columns of a kind are missing.
     #[error("the column '{missing}' is missing beside '{present}'")]
     Missing {
@@ -87,7 +81,7 @@ pub enum TableError {
     },
     /// There are no rows, or only one row of a trajectory.
     #[error("{0} rows below the header: {1}")]
-    Short(usize, &'static str),
+    TooFewRows(usize, &'static str),
 }
 
 /// The columns of a file by name.
@@ -97,7 +91,7 @@ struct Columns {
 }
 
 impl Columns {
-    fn read(bytes: &[u8]) -> Result<Columns, TableError> {
+    fn read(bytes: &[u8]) -> Result<(Columns, csv::Reader<&[u8]>), TableError> {
         let first = bytes.split(|byte| *byte == b'\n').next().unwrap_or_default();
         let columns = |delimiter: u8| first.split(|byte| *byte == delimiter).count();
         let delimiter = DELIMITERS
@@ -113,10 +107,10 @@ impl Columns {
             .collect();
         for (i, name) in names.iter().enumerate() {
             if !name.is_empty() && names[..i].contains(name) {
-                return Err(TableError::Twice { name: name.clone() });
+                return Err(TableError::DuplicateColumn(name.clone()));
             }
         }
-        Ok(Columns { names, delimiter })
+        Ok((Columns { names, delimiter }, reader))
     }
 
     fn find(&self, name: &str) -> Option<usize> {
@@ -144,7 +138,7 @@ enum Layout {
 }
 
 impl Layout {
-    fn of(columns: &Columns, header: &str) -> Result<Layout, TableError> {
+    fn from_columns(columns: &Columns, header: &str) -> Result<Layout, TableError> {
         let owned =
             |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
         let joints = |suffix: &str| {
@@ -161,7 +155,7 @@ impl Layout {
         let millimetres = columns.all(&owned(&["x_mm", "y_mm", "z_mm"]))?;
         let mm = metres.is_none();
         let Some(position) = metres.or(millimetres) else {
-            return Err(TableError::Columns { header: header.chars().take(80).collect() });
+            return Err(TableError::Columns(header.chars().take(80).collect()));
         };
         let Some(rotation) = columns.all(&owned(&["w", "i", "j", "k"]))? else {
             let (missing, present) = ("w".to_owned(), columns.names[position[0]].clone());
@@ -217,17 +211,17 @@ impl Row<'_> {
     }
 
     /// A speed or zone: a name, or a number in the file's unit of length.
-    fn amount(&self, column: Option<usize>, unit: f64) -> Result<Option<Amount>, TableError> {
+    fn amount(&self, column: Option<usize>, unit: f64) -> Result<Option<SpeedOrZone>, TableError> {
         let Some(column) = column else { return Ok(None) };
         let text = self.text(column);
         if text.is_empty() {
             return Ok(None);
         }
         if text.starts_with(|c: char| c.is_ascii_alphabetic()) {
-            return Ok(Some(Amount::Name(text.to_ascii_lowercase())));
+            return Ok(Some(SpeedOrZone::Name(text.to_ascii_lowercase())));
         }
         match self.number(column)? {
-            value if value > 0.0 => Ok(Some(Amount::Value(value * unit))),
+            value if value > 0.0 => Ok(Some(SpeedOrZone::Value(value * unit))),
             value => Err(self.error(column, format!("{value}: give a positive number or a name"))),
         }
     }
@@ -239,9 +233,9 @@ impl Row<'_> {
 /// The columns match no kind of points, or a cell is invalid (the first one, by row and column).
 pub fn read(bytes: &[u8]) -> Result<Table, TableError> {
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
-    let columns = Columns::read(bytes)?;
+    let (columns, mut reader) = Columns::read(bytes)?;
     let header = columns.names.join(",");
-    let layout = Layout::of(&columns, &header)?;
+    let layout = Layout::from_columns(&columns, &header)?;
     let (speed, zone) = (columns.find("speed"), columns.find("zone"));
     let mut used = layout.columns();
     used.extend(speed.iter().chain(&zone));
@@ -254,8 +248,6 @@ pub fn read(bytes: &[u8]) -> Result<Table, TableError> {
         notes.push(format!("columns that are not used: {}", unused.join(", ")));
     }
 
-    let mut reader =
-        ReaderBuilder::new().delimiter(columns.delimiter).flexible(true).from_reader(bytes);
     let mut rows: Vec<(u64, ByteRecord)> = Vec::new();
     let mut record = ByteRecord::new();
     while reader.read_byte_record(&mut record).unwrap_or(false) {
@@ -270,10 +262,10 @@ pub fn read(bytes: &[u8]) -> Result<Table, TableError> {
     let rows: Vec<Row<'_>> =
         rows.iter().map(|(line, record)| Row { record, columns: &columns, line: *line }).collect();
     if rows.is_empty() {
-        return Err(TableError::Short(0, "give at least one point"));
+        return Err(TableError::TooFewRows(0, "give at least one point"));
     }
     let (points, length) = points(&rows, &layout, &mut notes)?;
-    let amounts = |column| -> Result<Vec<Option<Amount>>, TableError> {
+    let amounts = |column| -> Result<Vec<Option<SpeedOrZone>>, TableError> {
         rows.iter().map(|row| row.amount(column, length)).collect()
     };
     Ok(Table { points, speeds: amounts(speed)?, zones: amounts(zone)?, notes })
@@ -301,7 +293,7 @@ fn points(
                 }
             }
             if t.len() < 2 {
-                return Err(TableError::Short(t.len(), "a trajectory needs at least two"));
+                return Err(TableError::TooFewRows(t.len(), "a trajectory needs at least two"));
             }
             Ok((Points::Trajectory(t.iter().map(|x| x - t[0]).collect(), q), length))
         }
@@ -359,8 +351,8 @@ mod tests {
         let Points::Joints(q) = &table.points else { panic!("joints") };
         assert!((q[0][0] - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
         assert!((q[0][5] - 0.5_f64.to_radians()).abs() < 1e-15);
-        assert_eq!(table.speeds, [Some(Amount::Value(0.1))]);
-        assert_eq!(table.zones, [Some(Amount::Name("z10".into()))]);
+        assert_eq!(table.speeds, [Some(SpeedOrZone::Value(0.1))]);
+        assert_eq!(table.zones, [Some(SpeedOrZone::Name("z10".into()))]);
         let table = read(b"x,y,z,w,i,j,k\n500,0,900,0,0,1,0\n").expect("read");
         let Points::Poses(poses) = &table.points else { panic!("poses") };
         assert_eq!(poses[0].0.translation.x, 0.5);

@@ -73,7 +73,7 @@ pub fn serve(
         entry: sent.entry.or(defaults.entry),
         inputs: if sent.inputs.is_empty() { defaults.inputs } else { sent.inputs },
     };
-    connection.initialize_finish(id, json!(about()))?;
+    connection.initialize_finish(id, json!(initialize_result()))?;
     let workspace = Workspace::new(|folder| read(&options, folder));
     let mut server = Server { workspace, analyses: BTreeMap::new() };
     for message in &connection.receiver {
@@ -82,10 +82,12 @@ pub fn serve(
                 if connection.handle_shutdown(&request)? {
                     break;
                 }
-                vec![Message::Response(server.answer(request))]
+                vec![Message::Response(server.answer_request(request))]
             }
             // A notification has no response, so a malformed one is ignored.
-            Message::Notification(notification) => server.notice(notification).unwrap_or_default(),
+            Message::Notification(notification) => {
+                server.handle_notification(notification).unwrap_or_default()
+            }
             Message::Response(_) => Vec::new(),
         };
         for answer in answers {
@@ -98,7 +100,7 @@ pub fn serve(
 }
 
 /// The capabilities of the server, its name and version.
-fn about() -> InitializeResult {
+fn initialize_result() -> InitializeResult {
     InitializeResult {
         capabilities: ServerCapabilities {
             position_encoding: Some(PositionEncodingKind::UTF16),
@@ -136,7 +138,10 @@ struct Server<R> {
 
 impl<R: Fn(&Path) -> Programs> Server<R> {
     /// Handles a notification; returns the changed diagnostics.
-    fn notice(&mut self, notification: Notification) -> serde_json::Result<Vec<Message>> {
+    fn handle_notification(
+        &mut self,
+        notification: Notification,
+    ) -> serde_json::Result<Vec<Message>> {
         let Notification { method, params } = notification;
         let uri = match LspNotificationMethod::from(method.as_str()) {
             LspNotificationMethod::TextDocumentDidOpen => {
@@ -163,36 +168,38 @@ impl<R: Fn(&Path) -> Programs> Server<R> {
             }
             _ => return Ok(Vec::new()),
         };
-        Ok(self.examine(&uri, &mut BTreeSet::new()))
+        Ok(self.lint(&uri, &mut BTreeSet::new()))
     }
 
     /// Closes a document, and lints its folder again with the file on disk.
     fn close(&mut self, uri: String) -> Vec<Message> {
         self.workspace.close(&uri);
         self.analyses.remove(&uri);
-        let mut stale = self.workspace.beside(&uri);
+        let mut stale = self.workspace.open_beside(&uri);
         let mut messages = vec![publish(uri, Vec::new())];
         while let Some(other) = stale.pop_first() {
-            messages.extend(self.examine(&other, &mut stale));
+            messages.extend(self.lint(&other, &mut stale));
         }
         messages
     }
 
     /// The diagnostics of a document and of the open documents of its programs, which are removed
     /// from `stale`.
-    fn examine(&mut self, uri: &str, stale: &mut BTreeSet<String>) -> Vec<Message> {
+    fn lint(&mut self, uri: &str, stale: &mut BTreeSet<String>) -> Vec<Message> {
         let mut messages = Vec::new();
         for (uri, analysis) in self.workspace.analyse(uri) {
             stale.remove(&uri);
-            let diagnostics =
-                analysis.own().map(|finding| diagnostic(finding, analysis.file())).collect();
+            let diagnostics = analysis
+                .own_findings()
+                .map(|finding| diagnostic(finding, &analysis.file))
+                .collect();
             messages.push(publish(uri.clone(), diagnostics));
             self.analyses.insert(uri, analysis);
         }
         messages
     }
 
-    fn answer(&self, Request { id, method, params }: Request) -> Response {
+    fn answer_request(&self, Request { id, method, params }: Request) -> Response {
         let answer = match LspRequestMethod::from(method.as_str()) {
             LspRequestMethod::TextDocumentHover => self.hover(params),
             LspRequestMethod::TextDocumentCodeAction => self.code_actions(params),
@@ -201,12 +208,10 @@ impl<R: Fn(&Path) -> Programs> Server<R> {
                 return Response::new_err(id, ErrorCode::MethodNotFound as i32, message);
             }
         };
-        answer.map_or_else(
-            |error| {
-                Response::new_err(id.clone(), ErrorCode::InvalidParams as i32, error.to_string())
-            },
-            |result| Response::new_ok(id.clone(), result),
-        )
+        match answer {
+            Ok(result) => Response::new_ok(id, result),
+            Err(error) => Response::new_err(id, ErrorCode::InvalidParams as i32, error.to_string()),
+        }
     }
 
     fn hover(&self, params: Value) -> serde_json::Result<Value> {
@@ -248,7 +253,7 @@ fn diagnostic(finding: &Finding, file: &SourceFile) -> Diagnostic {
 
 /// Time and energy of the movement or wait at a position, summed over its executions in a cycle.
 fn hover(analysis: &Analysis, position: Position) -> Option<Hover> {
-    let costs = analysis.costs_at(offset_of(analysis.file(), position))?;
+    let costs = analysis.costs_at(offset_of(&analysis.file, position))?;
     let times = match costs.times {
         1 => String::new(),
         times => format!(", {times} times a cycle together"),
@@ -257,16 +262,16 @@ fn hover(analysis: &Analysis, position: Position) -> Option<Hover> {
     let value = format!("**{}**: {joules}{:.3} s{times}", costs.what, costs.time_s);
     Some(Hover {
         contents: Contents::MarkupContent(MarkupContent { kind: MarkupKind::Markdown, value }),
-        range: Some(range_of(analysis.file(), costs.span)),
+        range: Some(range_of(&analysis.file, costs.span)),
     })
 }
 
 /// The fixes of the findings that touch a range. Fixes that change other files are only available
 /// on the command line.
 fn code_actions(analysis: &Analysis, uri: &Uri, range: Range) -> Vec<CodeAction> {
-    let file = analysis.file();
+    let file = &analysis.file;
     let (start, end) = (offset_of(file, range.start), offset_of(file, range.end));
-    let touched = analysis.own().filter(|it| it.span.start <= end && start <= it.span.end);
+    let touched = analysis.own_findings().filter(|it| it.span.start <= end && start <= it.span.end);
     let action = |finding: &Finding| {
         let fix = finding.fix.as_ref()?;
         fix.edits.iter().all(|edit| edit.span.file == file.id).then_some(())?;

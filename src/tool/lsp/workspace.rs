@@ -33,7 +33,7 @@ struct Folder {
 
 /// The findings in a document.
 pub(super) struct Analysis {
-    file: SourceFile,
+    pub(super) file: SourceFile,
     examined: Rc<Examined>,
     dynamics: bool,
 }
@@ -95,7 +95,7 @@ impl<R: Fn(&Path) -> Programs> Workspace<R> {
     }
 
     /// The open documents in the folder of a document.
-    pub(super) fn beside(&self, uri: &str) -> BTreeSet<String> {
+    pub(super) fn open_beside(&self, uri: &str) -> BTreeSet<String> {
         let folder = folder_of(uri);
         self.open.keys().filter(|other| folder_of(other) == folder).cloned().collect()
     }
@@ -131,12 +131,8 @@ impl<R: Fn(&Path) -> Programs> Workspace<R> {
 }
 
 impl Analysis {
-    pub(super) fn file(&self) -> &SourceFile {
-        &self.file
-    }
-
     /// The findings in the document itself.
-    pub(super) fn own(&self) -> impl Iterator<Item = &Finding> {
+    pub(super) fn own_findings(&self) -> impl Iterator<Item = &Finding> {
         self.examined.report.findings.iter().filter(|finding| finding.span.file == self.file.id)
     }
 

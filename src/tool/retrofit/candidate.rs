@@ -59,6 +59,16 @@ pub(super) fn candidates(sites: &[Site]) -> Vec<Candidate> {
     sites.iter().enumerate().flat_map(variants).collect()
 }
 
+/// The candidates that have a stream, with their indices.
+pub(super) fn with_stream(candidates: &[Candidate]) -> impl Iterator<Item = (usize, &Candidate)> {
+    candidates.iter().enumerate().filter(|(_, candidate)| candidate.retiming().is_some())
+}
+
+/// The candidates without a decision, with their indices.
+pub(super) fn pending(candidates: &[Candidate]) -> impl Iterator<Item = (usize, &Candidate)> {
+    candidates.iter().enumerate().filter(|(_, it)| matches!(it.state, State::Pending))
+}
+
 /// Replaces the states at these indices.
 pub(super) fn with_states(
     mut candidates: Vec<Candidate>,

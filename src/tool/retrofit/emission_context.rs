@@ -1,5 +1,7 @@
 //! The constant input of all emissions, and the text for parts of a program.
 
+use sha2::{Digest, Sha256};
+
 use super::files::Source;
 use super::guards::Guards;
 use super::job::Job;
@@ -10,46 +12,52 @@ use crate::rapid::ir::movement::{Argument, Movement};
 use crate::rapid::ir::predefined;
 use crate::rapid::ir::value::Datum;
 use crate::rapid::text::{SourceFile, Span};
-use crate::tool::emit::{Layout, Names, Parameter, Recorded, Robot};
+use crate::tool::emit::{Emission, Names, Parameter, Robot};
 
 /// The constant input of all emissions.
 pub(super) struct EmissionContext<'a> {
     pub(super) files: &'a [Source],
-    /// The same as source files.
-    pub(super) originals: Vec<SourceFile>,
     /// Index of the file whose folder receives the new modules.
     pub(super) beside: usize,
     /// The expressions that guards compare.
     pub(super) guards: &'a Guards<'a>,
-    /// The robot for which streams are planned.
-    pub(super) robot: Robot,
-    /// The operator's speed override for which they are planned, %.
-    pub(super) override_percent: f64,
-    /// The states that the program records for guards.
-    pub(super) recorded: Recorded,
-    pub(super) names: Names,
-    pub(super) layout: Layout,
+    pub(super) emission: Emission,
 }
 
 impl<'a> EmissionContext<'a> {
     pub(super) fn new(job: &'a Job<'a>, guards: &'a Guards<'a>) -> EmissionContext<'a> {
         let Job { original, model, settings, .. } = job;
-        let originals: Vec<SourceFile> =
+        let files: Vec<SourceFile> =
             original.files.iter().map(|source| source.file.clone()).collect();
-        let names = Names::free(&originals);
-        EmissionContext {
-            files: original.files,
-            guards,
+        let names = Names::free(&files);
+        let emission = Emission {
+            layout: settings.layout,
             robot: robot(model),
             override_percent: 100.0 * settings.options.speed_override.unwrap_or(1.0),
             recorded: recorded(original.program, original.files, &names),
+            program: hash(&files),
             names,
-            originals,
-            beside: original.program.modules[original.entry.module].span.file.0 as usize,
-            layout: settings.layout,
-        }
+            files,
+        };
+        let beside = original.program.modules[original.entry.module].span.file.0 as usize;
+        EmissionContext { files: original.files, beside, guards, emission }
     }
 }
+
+/// A hash that identifies a version of the program.
+fn hash(files: &[SourceFile]) -> String {
+    let mut hasher = Sha256::new();
+    for file in files {
+        hasher.update((file.bytes.len() as u64).to_le_bytes());
+        hasher.update(&file.bytes);
+    }
+    let mut digits = format!("{:x}", hasher.finalize());
+    digits.truncate(HASH_DIGITS);
+    digits
+}
+
+/// Number of emitted digits of the hash.
+const HASH_DIGITS: usize = 16;
 
 /// The robot as a guard identifies it: type name, and flange position at a fixed posture.
 fn robot(model: &Model) -> Robot {
@@ -77,7 +85,7 @@ pub(super) fn compared(
     movement: &Movement,
 ) -> (Vec<Parameter>, Vec<Datum>) {
     let mut compared = context.guards.parameters(arguments);
-    if context.recorded.load {
+    if context.emission.recorded.load {
         let load = movement.settings.grip_load_data.clone();
         let load = load.or_else(|| predefined::lookup("load0").map(|value| value.datum));
         let parameter = Parameter {

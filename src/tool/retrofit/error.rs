@@ -73,7 +73,7 @@ pub enum RetrofitError {
     Robot(#[from] NotReady),
     /// The takt is below the minimum cycle time.
     #[error(
-        "a takt of {takt:.3} s is below the possible: the cycle takes at least {least:.3} s with \
+        "a takt of {takt:.3} s is too short: the cycle takes at least {least:.3} s with \
          this robot, of which {fixed:.3} s are waits and movements that stay; give --takt {least:.3} \
          or more"
     )]
@@ -87,7 +87,7 @@ pub enum RetrofitError {
     },
     /// The time factor is below the minimum of every run.
     #[error(
-        "a time factor of {factor} is below the possible: no run takes less than {least:.3} times \
+        "a time factor of {factor} is too small: no run takes less than {least:.3} times \
          as long as before with this robot; give --time-factor {least:.3} or more"
     )]
     Factor {

@@ -1,6 +1,8 @@
 //! Input and output files of a program.
 
-use crate::rapid::text::{FileId, SourceFile};
+use std::collections::BTreeMap;
+
+use crate::rapid::text::{Edit, FileId, SourceFile, Span, apply};
 
 /// A file of the program.
 #[derive(Clone, Debug)]
@@ -48,6 +50,12 @@ impl OutputFile {
     }
 }
 
+/// File and line of the start of a span, as in messages.
+pub(in crate::tool) fn file_and_line(files: &[Source], span: Span) -> String {
+    let file = &files[span.file.0 as usize].file;
+    format!("{}:{}", file.path, file.position(span.start).line)
+}
+
 /// All files of the program, unchanged.
 pub(super) fn unchanged(files: &[Source]) -> Vec<OutputFile> {
     let file = |(index, source): (usize, &Source)| OutputFile {
@@ -57,6 +65,23 @@ pub(super) fn unchanged(files: &[Source]) -> Vec<OutputFile> {
         input: Some(index),
     };
     files.iter().enumerate().map(file).collect()
+}
+
+/// All files of the program, with these edits; `None` if edits overlap.
+pub(super) fn with_edits(
+    files: &[Source],
+    edits: impl Iterator<Item = Edit>,
+) -> Option<Vec<OutputFile>> {
+    let mut by_file: BTreeMap<usize, Vec<Edit>> = BTreeMap::new();
+    for edit in edits {
+        by_file.entry(edit.span.file.0 as usize).or_default().push(edit);
+    }
+    let mut outputs = unchanged(files);
+    for (index, edits) in by_file {
+        let bytes = apply(&files[index].file.bytes, &edits).ok()?;
+        outputs[index] = OutputFile::changed(index, &files[index], bytes);
+    }
+    Some(outputs)
 }
 
 /// The output files as input of a new read.

@@ -16,7 +16,7 @@ use crate::retime::optimize::reason::Reason;
 use crate::retime::optimize::retime::{Goal, Retiming, SLOWEST, Task, fastest};
 
 /// Maximum number of refinements of the energy-time curves.
-const LOOKS: usize = 4;
+const MAX_REFINEMENTS: usize = 4;
 /// Smaller differences between goals are ignored, s.
 const QUANTUM: f64 = 1e-4;
 
@@ -25,11 +25,11 @@ pub(super) struct Plan {
     /// One for each task.
     pub(super) goals: Vec<Goal>,
     /// The cycle, if its time is distributed among the runs.
-    shared: Option<Shared>,
+    shared: Option<SharedCycle>,
 }
 
 /// A cycle whose time is distributed among its runs.
-struct Shared {
+struct SharedCycle {
     curves: Vec<TradeOff>,
     cycle: Cycle,
 }
@@ -67,7 +67,7 @@ pub(super) fn goals(
             let bounds = |(_, task): &(usize, Task<'_>)| (before(task), SLOWEST * before(task));
             (simulation.cycle_s, tasks.iter().map(bounds).collect())
         }
-        Budget::Takt(takt) => (takt, possible(original, tasks, &events, takt)?),
+        Budget::Takt(takt) => (takt, time_bounds(original, tasks, &events, takt)?),
     };
     let cycle = cycle(original, planning.model, settings, &events, takt);
     Ok(shared_time(cycle, tasks, &bounds)
@@ -86,7 +86,7 @@ fn shared_time(
         .zip(bounds)
         .map(|((_, task), (shortest, longest))| Curve::new(task, *shortest, *longest))
         .collect();
-    let mut looks = 0;
+    let mut refinements = 0;
     loop {
         let known = tasks.iter().zip(bounds).zip(&curves);
         let known: Option<Vec<TradeOff>> = known
@@ -96,24 +96,18 @@ fn shared_time(
                 curve.as_ref().and_then(Curve::trade_off).or_else(|| TradeOff::new(kept()))
             })
             .collect();
-        let shared = Shared { curves: known.unwrap_or_default(), cycle };
-        let times = shared.times()?;
-        looks += 1;
+        let shared = SharedCycle { curves: known.unwrap_or_default(), cycle };
+        let times = shared.cycle.share(&shared.curves)?;
+        refinements += 1;
         let learnt = curves
             .par_iter_mut()
             .zip(&times)
             .map(|(curve, time)| curve.as_mut().is_some_and(|curve| curve.learn(*time)));
-        if looks > LOOKS || learnt.filter(|learnt| *learnt).count() == 0 {
+        if refinements > MAX_REFINEMENTS || learnt.filter(|learnt| *learnt).count() == 0 {
             let goals = times.into_iter().map(Goal::Exactly).collect();
             return Some(Plan { goals, shared: Some(shared) });
         }
         cycle = shared.cycle;
-    }
-}
-
-impl Shared {
-    fn times(&self) -> Option<Vec<f64>> {
-        self.cycle.share(&self.curves)
     }
 }
 
@@ -137,7 +131,7 @@ impl Plan {
 
     /// Distributes the time again after the tasks took `times` (s); tasks slower than their goal
     /// are fixed at that time. Returns the other tasks whose goals changed.
-    pub(super) fn share_anew(&mut self, times: &[f64]) -> Vec<usize> {
+    pub(super) fn redistribute(&mut self, times: &[f64]) -> Vec<usize> {
         let Some(shared) = self.shared.as_mut() else { return Vec::new() };
         let mut is_late = vec![false; times.len()];
         for (task, time) in times.iter().enumerate() {
@@ -148,7 +142,7 @@ impl Plan {
                 is_late[task] = true;
             }
         }
-        let Some(new) = shared.times() else { return Vec::new() };
+        let Some(new) = shared.cycle.share(&shared.curves) else { return Vec::new() };
         let goals = self.goals.iter_mut().zip(new).zip(is_late).enumerate();
         goals
             .filter_map(|(task, ((goal, time), is_late))| {
@@ -161,7 +155,7 @@ impl Plan {
 }
 
 /// The shortest and longest useful time of each task, s. `events`: the events of each task.
-fn possible(
+fn time_bounds(
     original: &Original<'_>,
     tasks: &[(usize, Task<'_>)],
     events: &[&[usize]],

@@ -1,6 +1,6 @@
 //! The cost of guards: dozens of RAPID instructions at the stop point before a stream.
 
-use super::candidate::{Candidate, State};
+use super::candidate::{Candidate, State, with_stream};
 use super::figures::INSTRUCTION_MS;
 use super::job::Job;
 use super::settings::{Budget, Objective};
@@ -9,7 +9,7 @@ use crate::retime::energy::power::holding_w;
 use crate::retime::optimize::reason::Reason;
 
 /// Maximum share of the cycle for all guards.
-const MOST: f64 = 0.005;
+const MAX_SHARE: f64 = 0.005;
 
 /// Refuses the candidates of sites whose guards cost more than their streams save; if all guards
 /// together take too long, also those that save least per guard time. `guards`: places and
@@ -63,19 +63,18 @@ pub(super) fn costly(
         let mut all = 0.0;
         for (site, time, _) in worth {
             all += time;
-            if all > MOST * original.cycle.simulation.cycle_s {
+            if all > MAX_SHARE * original.cycle.simulation.cycle_s {
                 all -= time;
                 let why = format!(
                     "its guards take {:.1} ms in a cycle, and all guards may take {:.1} % of it",
                     1e3 * time,
-                    100.0 * MOST
+                    100.0 * MAX_SHARE
                 );
                 costly.push((site, why));
             }
         }
     }
-    let streams = candidates.iter().enumerate().filter(|(_, c)| c.retiming().is_some());
-    streams
+    with_stream(candidates)
         .filter_map(|(index, candidate)| {
             let (_, why) = costly.iter().find(|(site, _)| *site == candidate.site)?;
             Some((index, State::Refused(Reason::NoStream(why.clone()))))

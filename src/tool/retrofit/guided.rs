@@ -7,11 +7,12 @@ use super::candidate::{Candidate, State, with_states};
 use super::error::RetrofitError;
 use super::files::{OutputFile, unchanged};
 use super::job::Original;
+use super::order::are_close;
 use super::simulated::ENDPOINT_TOLERANCE;
 use crate::rapid::ir::predefined;
 use crate::rapid::ir::program::{Program, Symbol};
 use crate::rapid::text::Span;
-use crate::retime::motion::stream::{DOF, Joints, Stream};
+use crate::retime::motion::stream::{Joints, Stream};
 use crate::retime::motion::timeline::Run;
 use crate::retime::optimize::reason::Reason;
 use crate::tool::emit::{self, EGM_STEP_S, GeneratedNames, Names};
@@ -112,17 +113,16 @@ fn positions(stream: &Stream) -> Vec<Joints> {
 /// Whether the rows of a file are these positions.
 fn reads_as(text: &str, positions: &[Joints]) -> bool {
     let rows = text.lines().skip(1);
-    let row = |line: &str| -> Option<Vec<f64>> {
-        line.split(',').skip(1).map(|x| x.parse::<f64>().ok().map(f64::to_radians)).collect()
+    let row = |line: &str| -> Option<Joints> {
+        let values = line.split(',').skip(1).map(|x| x.parse::<f64>().ok().map(f64::to_radians));
+        values.collect::<Option<Vec<f64>>>()?.try_into().ok()
     };
     let same = |(line, q): (&str, &Joints)| {
-        row(line).is_some_and(|values| {
-            values.len() == DOF && (0..DOF).all(|j| (values[j] - q[j]).abs() <= ROUNDING)
-        })
+        row(line).is_some_and(|values| are_close(&values, q, ROUNDING))
     };
     rows.clone().count() == positions.len() && rows.zip(positions).all(same)
 }
 
 fn ends_at(positions: &[Joints], end: &Joints) -> bool {
-    positions.last().is_some_and(|q| (0..DOF).all(|j| (q[j] - end[j]).abs() <= ENDPOINT_TOLERANCE))
+    positions.last().is_some_and(|q| are_close(q, end, ENDPOINT_TOLERANCE))
 }

@@ -29,10 +29,10 @@ pub(super) fn marked_sites(
     let interrupt = interrupt_hazard(program);
     let moved = external_axes(simulation);
     let whole = program_hazard(program);
-    let catcher = catcher(program);
+    let argument_error_handler = argument_error_handler(program);
     let mut sites = sites(program, simulation);
     for variant in sites.iter_mut().flat_map(|site| &mut site.variants) {
-        let elsewhere = stands_elsewhere(simulation, &variant.events);
+        let elsewhere = external_axes_differ(simulation, &variant.events);
         let hazard = |run: &Run, event: usize| {
             let mut spans = run.moves.iter().map(|record| record.movement.span);
             let handler = spans.find_map(|span| handled.get(&span));
@@ -43,7 +43,7 @@ pub(super) fn marked_sites(
                 .or_else(|| axes.then_some(Reason::ExternalAxes))
                 .or_else(|| stop_with_time(run))
                 .or_else(|| guards.refusal(run))
-                .or_else(|| catcher.clone().filter(|_| guards.may_raise(run)))
+                .or_else(|| argument_error_handler.clone().filter(|_| guards.may_raise(run)))
         };
         let mut runs = variant.events.iter().filter_map(|event| {
             let What::Run(run) = &simulation.events[*event].what else { return None };
@@ -62,8 +62,9 @@ pub(super) fn marked_sites(
 
 /// Why no movement of the program can become a stream.
 fn program_hazard(program: &Program) -> Option<Reason> {
-    let own_name = || emit::own_name(program).map(|name| Reason::OwnName(name.into()));
-    emit::has_streams(program).then_some(Reason::Already).or_else(own_name)
+    let redeclared_name =
+        || emit::redeclared_name(program).map(|name| Reason::OwnName(name.into()));
+    emit::has_streams(program).then_some(Reason::Already).or_else(redeclared_name)
 }
 
 /// A stop point with an additional wait; a stream would lose that wait.
@@ -73,7 +74,7 @@ fn stop_with_time(run: &Run) -> Option<Reason> {
 }
 
 /// Whether the external axes differ between executions of one variant.
-fn stands_elsewhere(simulation: &Simulation, events: &[usize]) -> bool {
+fn external_axes_differ(simulation: &Simulation, events: &[usize]) -> bool {
     let mut places = events.iter().filter_map(|event| match &simulation.events[*event].what {
         What::Run(run) => run.moves.first().map(|record| record.movement.external),
         _ => None,
@@ -109,10 +110,10 @@ fn external_axes(simulation: &Simulation) -> BTreeSet<usize> {
 
 /// The routine that handles an error of an argument: the guard evaluates all arguments before the
 /// first movement, so the error would come earlier.
-fn catcher(program: &Program) -> Option<Reason> {
+fn argument_error_handler(program: &Program) -> Option<Reason> {
     let takes = |(numbers, block): &(Vec<Expr>, Block)| {
         let named = |number: &Expr| is_number(number, Cause::Argument);
-        (numbers.is_empty() || numbers.iter().any(named)) && may_take(block)
+        (numbers.is_empty() || numbers.iter().any(named)) && handles_argument_error(block)
     };
     let routine = routines(program).find(|routine| routine.error.iter().any(takes))?;
     Some(Reason::Handler(format!(
@@ -123,7 +124,7 @@ fn catcher(program: &Program) -> Option<Reason> {
 }
 
 /// Whether a handler does more than re-raise an error of an argument.
-fn may_take(block: &Block) -> bool {
+fn handles_argument_error(block: &Block) -> bool {
     block.iter().any(|stmt| match &stmt.kind {
         StmtKind::If { branches, otherwise } => {
             otherwise.is_some()
@@ -162,14 +163,14 @@ fn handler_of(routine: &Routine) -> Option<String> {
     let mut taking = routine.error.iter().filter(|(numbers, _)| {
         numbers.is_empty() || numbers.iter().any(|n| is_number(n, Cause::Movement))
     });
-    let again = taking.find_map(|(_, handler)| resumes(handler))?;
+    let again = taking.find_map(|(_, handler)| resuming_statement(handler))?;
     Some(format!(
         "the error handler of its routine may go on within it ({again}) after an error of any kind"
     ))
 }
 
 /// The first statement of a handler that resumes an interrupted movement.
-fn resumes(block: &Block) -> Option<&'static str> {
+fn resuming_statement(block: &Block) -> Option<&'static str> {
     block.iter().find_map(|stmt| match &stmt.kind {
         StmtKind::Retry => Some("RETRY"),
         StmtKind::TryNext => Some("TRYNEXT"),
@@ -182,14 +183,14 @@ fn resumes(block: &Block) -> Option<&'static str> {
             .filter(|(condition, _)| may_hold(condition, Cause::Movement))
             .map(|(_, block)| block)
             .chain(otherwise)
-            .find_map(resumes),
+            .find_map(resuming_statement),
         StmtKind::Test { value, cases, default } if is_errno(value) => cases
             .iter()
             .filter(|(values, _)| values.iter().any(|n| is_number(n, Cause::Movement)))
             .map(|(_, block)| block)
             .chain(default)
-            .find_map(resumes),
-        other => other.blocks().into_iter().find_map(resumes),
+            .find_map(resuming_statement),
+        other => other.blocks().into_iter().find_map(resuming_statement),
     })
 }
 

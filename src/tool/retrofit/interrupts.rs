@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use super::statements::statements;
-use crate::rapid::builtins::{self, Function, Instruction, Source, is_movement, may_write};
-use crate::rapid::ir::hir::{Arg, Block, Callee, Expr, ExprKind, Routine, StmtKind};
+use super::statements::{places_written_by_functions, statements, written_places};
+use crate::rapid::builtins::{self, Instruction, Source, is_movement, may_write};
+use crate::rapid::ir::hir::{Block, Callee, Expr, ExprKind, Routine, StmtKind};
 use crate::rapid::ir::program::{DataId, Program, RoutineId, Symbol};
 use crate::retime::optimize::reason::Reason;
 
@@ -38,6 +38,11 @@ fn traps(program: &Program) -> Vec<(String, Reach)> {
                     let routine = program.routine(id);
                     for expr in routine.data.iter().filter_map(|data| data.init.as_ref()) {
                         reach.expr(program, id.module, expr);
+                        reach.add_writes(
+                            program,
+                            id.module,
+                            &places_written_by_functions(vec![expr]),
+                        );
                     }
                     for block in routine.blocks() {
                         reach.block(program, id.module, block);
@@ -101,23 +106,18 @@ impl Reach {
         }
     }
 
-    fn writes(&mut self, program: &Program, module: usize, target: &Expr) {
-        if let Some(name) = target.base()
-            && let Some(Symbol::Data(id)) = program.resolve(module, &name.key)
-        {
-            self.written.insert(id);
+    fn add_writes(&mut self, program: &Program, module: usize, places: &[&Expr]) {
+        for name in places.iter().filter_map(|place| place.base()) {
+            if let Some(Symbol::Data(id)) = program.resolve(module, &name.key) {
+                self.written.insert(id);
+            }
         }
     }
 
-    /// Functions may also write data, for example their arguments.
+    /// Adds the functions that an expression calls.
     fn expr(&mut self, program: &Program, module: usize, expr: &Expr) {
-        if let ExprKind::Call(name, args) = &expr.kind {
+        if let ExprKind::Call(name, _) = &expr.kind {
             self.call(program, module, &name.text);
-            if !builtins::function(&name.key).is_some_and(Function::only_reads) {
-                for arg in args.iter().filter_map(Arg::value) {
-                    self.writes(program, module, arg);
-                }
-            }
         }
         for part in expr.parts() {
             self.expr(program, module, part);
@@ -125,18 +125,10 @@ impl Reach {
     }
 
     fn block(&mut self, program: &Program, module: usize, block: &Block) {
-        for stmt in block {
-            if let StmtKind::Assign { target, .. } = &stmt.kind {
-                self.writes(program, module, target);
-            }
+        let may_write = |key: &str| program.resolve(module, key).is_some() || may_write(key);
+        for stmt in statements(block) {
+            self.add_writes(program, module, &written_places(stmt, may_write));
             if let StmtKind::Call(call) = &stmt.kind {
-                let only_reads = matches!(&call.callee, Callee::Name(name)
-                    if program.resolve(module, &name.key).is_none() && !may_write(&name.key));
-                if !only_reads {
-                    for arg in call.args.iter().filter_map(Arg::value) {
-                        self.writes(program, module, arg);
-                    }
-                }
                 match &call.callee {
                     Callee::Name(name) => self.call(program, module, &name.text),
                     Callee::Late(_) => {
@@ -146,9 +138,6 @@ impl Reach {
             }
             for expr in stmt.kind.exprs() {
                 self.expr(program, module, expr);
-            }
-            for inner in stmt.kind.blocks() {
-                self.block(program, module, inner);
             }
         }
     }

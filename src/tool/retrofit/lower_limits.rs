@@ -5,7 +5,7 @@
 
 use rayon::prelude::*;
 
-use super::candidate::{Candidate, State};
+use super::candidate::{Candidate, State, with_stream};
 use super::figures::LowerLimits;
 use super::files::{OutputFile, read_again};
 use super::job::Original;
@@ -70,6 +70,6 @@ pub(super) fn losing(
             })
         })
     };
-    let streams = candidates.iter().enumerate().filter(|(_, c)| c.retiming().is_some());
-    streams.filter_map(|(index, c)| Some((index, State::Refused(loses(c)?)))).collect()
+    let refused = |(index, c): (usize, &Candidate)| Some((index, State::Refused(loses(c)?)));
+    with_stream(candidates).filter_map(refused).collect()
 }

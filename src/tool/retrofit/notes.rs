@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::figures::{Figures, Segment, SegmentKind};
+use super::files::file_and_line;
 use super::job::Original;
 use super::padding::Padding;
 use super::settings::{Budget, Objective, Settings};
@@ -50,10 +51,7 @@ pub(super) fn notes(
             let before = segment.energy_before_j + resting_j(model, &program.cycle, waited);
             segment.energy_after_j > before + ROUNDING_J
         })
-        .map(|segment| {
-            let file = &program.files[segment.span.file.0 as usize].file;
-            format!("{}:{}", file.path, file.position(segment.span.start).line)
-        })
+        .map(|segment| file_and_line(program.files, segment.span))
         .collect();
     if dearer.is_empty() {
         return notes;

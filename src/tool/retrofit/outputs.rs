@@ -1,15 +1,13 @@
 //! The files of the emitted program.
 
-use sha2::{Digest, Sha256};
-
 use super::candidate::Candidate;
 use super::emission_context::EmissionContext;
 use super::emitted_sites::{emitted_site, emitted_wait};
 use super::error::RetrofitError;
-use super::files::{OutputFile, unchanged};
+use super::files::{OutputFile, unchanged, with_edits};
 use super::job::Original;
 use super::relocated_waits::RelocatedWait;
-use crate::rapid::text::{self, SourceFile, Span};
+use crate::rapid::text::Span;
 use crate::tool::emit;
 
 /// Emits the streams of the candidates and the relocated waits; other files stay unchanged.
@@ -24,32 +22,13 @@ pub(super) fn emitted(
         .filter_map(|site| emitted_site(context, original, candidates, site))
         .collect();
     emitted_sites.extend(waits.iter().filter_map(|wait| emitted_wait(context, original, wait)));
-    let mut outputs = unchanged(files);
     if emitted_sites.is_empty() {
-        return Ok(Outputs { files: outputs, guards: Vec::new() });
+        return Ok(Outputs { files: unchanged(files), guards: Vec::new() });
     }
-    let program = hash(&context.originals);
-    let emission = emit::Emission {
-        files: &context.originals,
-        names: &context.names,
-        layout: context.layout,
-        robot: &context.robot,
-        override_percent: context.override_percent,
-        recorded: &context.recorded,
-        program: &program,
-    };
-    let emitted = emit::emit(&emission, &emitted_sites)?;
-    for (i, source) in files.iter().enumerate() {
-        let edits: Vec<text::Edit> =
-            emitted.edits.iter().filter(|e| e.span.file.0 as usize == i).cloned().collect();
-        if edits.is_empty() {
-            continue;
-        }
-        // Insertions at distinct places cannot overlap.
-        let bytes =
-            text::apply(&source.file.bytes, &edits).unwrap_or_else(|_| source.file.bytes.clone());
-        outputs[i] = OutputFile::changed(i, source, bytes);
-    }
+    let emitted = emit::emit(&context.emission, &emitted_sites)?;
+    // Insertions at distinct places cannot overlap.
+    let mut outputs =
+        with_edits(files, emitted.edits.into_iter()).unwrap_or_else(|| unchanged(files));
     let entry_file = &files[context.beside];
     let folder = entry_file.relative.rsplit_once('/').map_or("", |(folder, _)| folder);
     let end_of_line = emit::end_of_line(&entry_file.file.bytes);
@@ -67,17 +46,3 @@ pub(super) struct Outputs {
     /// Places with guards, and the number of RAPID instructions of these in a cycle.
     pub(super) guards: Vec<(Span, usize)>,
 }
-
-/// A hash that identifies a version of the program.
-fn hash(files: &[SourceFile]) -> String {
-    let mut hasher = Sha256::new();
-    for file in files {
-        hasher.update((file.bytes.len() as u64).to_le_bytes());
-        hasher.update(&file.bytes);
-    }
-    let digest = hasher.finalize();
-    digest.iter().take(HASH_BYTES).fold(String::new(), |text, byte| text + &format!("{byte:02x}"))
-}
-
-/// Number of emitted bytes of the hash.
-const HASH_BYTES: usize = 8;

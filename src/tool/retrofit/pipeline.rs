@@ -21,7 +21,7 @@ use super::results::results;
 use super::rewritten::Rewritten;
 use super::rounds::verified;
 use super::settings::{Budget, Form, Objective, Settings};
-use super::sharing::{keep_to_the_cycle, leave_what_does_not_pay, streams};
+use super::sharing::{enforce_cycle_time, streams, undo_costly_streams};
 use super::simulated::Simulated;
 use super::speeds;
 use super::torque_demand::mean_robot;
@@ -77,9 +77,9 @@ fn with_streams(
     let mut outcomes = streams(&plan, &tasks, settings.budget, progress);
     match settings.budget {
         Budget::AsBefore => {
-            let (plan, kept) = keep_to_the_cycle(plan, &tasks, outcomes);
+            let (plan, kept) = enforce_cycle_time(plan, &tasks, outcomes);
             outcomes = match settings.objective {
-                Objective::Energy => leave_what_does_not_pay(&plan, &tasks, kept),
+                Objective::Energy => undo_costly_streams(&plan, &tasks, kept),
                 Objective::Time => kept,
             };
         }
@@ -107,7 +107,7 @@ fn with_streams(
         .filter_map(|candidate| candidate.retiming())
         .any(|retiming| retiming.path == PathUse::Left);
     if settings.form == Form::Guided {
-        let (files, candidates) = guided(original, rewritten.candidates, &context.names)?;
+        let (files, candidates) = guided(original, rewritten.candidates, &context.emission.names)?;
         rewritten.candidates = candidates;
         rewritten.outputs.files = files;
         rewritten.outputs.guards.clear();

@@ -1,6 +1,6 @@
 //! The planning tasks of the optimiser.
 
-use super::candidate::{Candidate, State};
+use super::candidate::{Candidate, pending};
 use super::job::Job;
 use super::settings::Settings;
 use crate::arm::robot::Model;
@@ -48,8 +48,7 @@ impl<'a> Planning<'a> {
 
     /// The tasks of the pending candidates, with their indices.
     pub(super) fn tasks(&self, candidates: &[Candidate]) -> Vec<(usize, Task<'_>)> {
-        let pending = candidates.iter().enumerate();
-        let pending = pending.filter(|(_, candidate)| matches!(candidate.state, State::Pending));
-        pending.filter_map(|(i, c)| Some((i, self.task(c, &self.settings.freedom)?))).collect()
+        let task = |(i, c): (usize, &_)| Some((i, self.task(c, &self.settings.freedom)?));
+        pending(candidates).filter_map(task).collect()
     }
 }

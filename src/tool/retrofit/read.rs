@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::error::RetrofitError;
-use super::files::Source;
+use super::files::{Source, file_and_line};
 use crate::rapid::ir::lower;
 use crate::rapid::ir::program::{Program, RoutineId};
 use crate::rapid::syntax::{self, SyntaxError};
@@ -14,32 +14,16 @@ use crate::tool::emit;
 /// # Errors
 /// No entry, several entries, or syntax errors in its module.
 pub fn read_program(files: &[Source], entry: &str) -> Result<(Program, RoutineId), RetrofitError> {
-    let parsed: Vec<_> = files
-        .par_iter()
-        .map(|source| {
-            let parse = syntax::parse(&source.file.bytes);
-            let modules = lower(source.file.id, &parse, &source.file.bytes);
-            (parse.errors, modules)
-        })
-        .collect();
-    let mut errors: Vec<Vec<SyntaxError>> = Vec::new();
-    let mut modules = Vec::new();
-    for (file_errors, file_modules) in parsed {
-        errors.push(file_errors);
-        modules.extend(file_modules);
-    }
-    let program = Program::new(modules);
+    let parsed = files.par_iter().map(|source| {
+        let parse = syntax::parse(&source.file.bytes);
+        let modules = lower(source.file.id, &parse, &source.file.bytes);
+        (parse.errors, modules)
+    });
+    let (errors, modules): (Vec<Vec<SyntaxError>>, Vec<_>) = parsed.unzip();
+    let program = Program::new(modules.into_iter().flatten().collect());
     if let Some(clash) = program.clash(entry) {
-        let place = |i: usize| {
-            let span = clash.spans[i];
-            let file = &files[span.file.0 as usize].file;
-            format!("{}:{}", file.path, file.position(span.start).line)
-        };
-        return Err(RetrofitError::TwoEntries {
-            entry: entry.to_owned(),
-            first: place(0),
-            second: place(1),
-        });
+        let [first, second] = [0, 1].map(|i| file_and_line(files, clash.spans[i]));
+        return Err(RetrofitError::TwoEntries { entry: entry.to_owned(), first, second });
     }
     if let Some(missing) = emit::missing_streams(&program) {
         let file = &files[missing.span.file.0 as usize].file;

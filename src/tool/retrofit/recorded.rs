@@ -3,9 +3,7 @@
 
 use super::files::Source;
 use super::guards::one_line;
-use crate::rapid::ir::hir::{
-    Arg, ArgKind, Block, Call, Callee, Expr, ExprKind, Routine, Stmt, StmtKind,
-};
+use crate::rapid::ir::hir::{Arg, Block, Call, Callee, ExprKind, Routine, Stmt, StmtKind};
 use crate::rapid::ir::program::Program;
 use crate::rapid::text::{Charset, Edit, Span, charset};
 use crate::tool::emit::{Names, Recorded};
@@ -20,17 +18,16 @@ enum Change {
 
 /// The insertions that record these effects.
 pub(super) fn recorded(program: &Program, files: &[Source], names: &Names) -> Recorded {
-    let mut found = Found { program, module: 0, changes: Vec::new() };
+    let mut found = StateChangeCollector { program, module: 0, changes: Vec::new() };
     for (m, module) in program.modules.iter().enumerate() {
         found.module = m;
         for block in module.routines.iter().flat_map(Routine::blocks) {
             found.block(block);
         }
     }
-    let is_on = |change: &(Place, Change)| matches!(change.1, Change::Switch(_, true));
     let mut switches: Vec<&'static str> = Vec::new();
-    for (_, change) in found.changes.iter().filter(|change| is_on(change)) {
-        if let Change::Switch(name, _) = change
+    for (_, change) in &found.changes {
+        if let Change::Switch(name, true) = change
             && !switches.contains(name)
         {
             switches.push(name);
@@ -73,13 +70,13 @@ struct Place {
     compact: Option<Span>,
 }
 
-struct Found<'p> {
+struct StateChangeCollector<'p> {
     program: &'p Program,
     module: usize,
     changes: Vec<(Place, Change)>,
 }
 
-impl Found<'_> {
+impl StateChangeCollector<'_> {
     fn block(&mut self, block: &Block) {
         for stmt in block {
             self.statement(stmt, None);
@@ -115,14 +112,12 @@ impl Found<'_> {
 
 /// The effect of an instruction.
 fn change(key: &str, call: &Call) -> Option<Change> {
-    let first = call.args.first();
+    let first = call.args.first().and_then(Arg::value);
     let names = |word: &str| {
-        first
-            .and_then(value)
-            .is_some_and(|expr| matches!(&expr.kind, ExprKind::Ref(name) if name.key == word))
+        first.is_some_and(|expr| matches!(&expr.kind, ExprKind::Ref(name) if name.key == word))
     };
     Some(match key {
-        "gripload" => Change::Load(first.and_then(value)?.span),
+        "gripload" => Change::Load(first?.span),
         "softact" => Change::Switch("SoftAct", true),
         "softdeact" => Change::Switch("SoftAct", false),
         "tuneservo" => Change::Switch("TuneServo", true),
@@ -136,11 +131,4 @@ fn change(key: &str, call: &Call) -> Option<Change> {
         }
         _ => return None,
     })
-}
-
-fn value(arg: &Arg) -> Option<&Expr> {
-    match &arg.kind {
-        ArgKind::Positional(expr) | ArgKind::Named(_, expr) => Some(expr),
-        _ => None,
-    }
 }

@@ -6,6 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::candidate::{Candidate, State};
 use super::files::Source;
 use super::job::Job;
+use super::order::are_close;
 use super::settings::Settings;
 use super::simulated::{ENDPOINT_TOLERANCE, Simulated, TIME_TOLERANCE};
 use crate::arm::robot::Model;
@@ -19,7 +20,6 @@ use crate::retime::optimize::check::{Room, check};
 use crate::retime::optimize::keep_out::around;
 use crate::retime::optimize::reason::Reason;
 use crate::retime::optimize::rest::{Rest, Standstill, rest};
-use crate::retime::path::joint_path::{DOF, Joints};
 
 /// Smaller joint distances count as the same place, rad.
 const SAME_PLACE: f64 = 1e-6;
@@ -103,7 +103,7 @@ struct Standing<'a> {
 impl Standing<'_> {
     fn is_same(&self, other: &Standing<'_>) -> bool {
         (self.duration - other.duration).abs() < TIME_TOLERANCE
-            && apart(&self.record.q, &other.record.q) < SAME_PLACE
+            && are_close(&self.record.q, &other.record.q, SAME_PLACE)
             && self.record.load == other.record.load
             && self.record.wait.routine == other.record.wait.routine
     }
@@ -124,7 +124,7 @@ fn standing(simulation: &Simulation, event: usize) -> Option<Standing<'_>> {
     let at_home = last.routine == record.wait.routine
         && last.span.file == record.wait.span.file
         && leading.load == record.load
-        && apart(&leading.end, &record.q) < SAME_PLACE;
+        && are_close(&leading.end, &record.q, SAME_PLACE);
     let duration = simulation.events[event].duration;
     (stated && at_home).then_some(Standing { record, duration, run, leading })
 }
@@ -134,10 +134,6 @@ fn stands_alone(files: &[Source], span: Span) -> bool {
     let bytes = &files[span.file.0 as usize].file.bytes[..span.start as usize];
     let line = bytes.iter().rev().take_while(|b| !matches!(b, b'\n' | b'\r'));
     line.into_iter().all(u8::is_ascii_whitespace)
-}
-
-fn apart(a: &Joints, b: &Joints) -> f64 {
-    (0..DOF).map(|j| (a[j] - b[j]).abs()).fold(0.0, f64::max)
 }
 
 /// A fault of a relocated wait in the emitted program.
@@ -152,7 +148,7 @@ pub(super) enum Fault {
 /// The simulation with each relocated wait folded into one event at its original place: settling,
 /// way out, standing, way back, with the sum of their energies. Also the faults by index of the
 /// wait; with faults the simulation is incomplete.
-pub(super) fn folded(
+pub(super) fn with_waits_folded(
     model: &Model,
     settings: &Settings,
     emitted: Simulated,
@@ -185,8 +181,8 @@ pub(super) fn folded(
             parts_energy.push(energy);
             taken += 1;
         }
-        let settling = events.last_mut().map_or(0.0, unsettle);
-        let fault = match excess(model, settings, &parts, &waits[index]) {
+        let settling = events.last_mut().map_or(0.0, remove_settling);
+        let fault = match excess_time(model, settings, &parts, &waits[index]) {
             Some(late) if (late + settling).abs() <= TIME_TOLERANCE => None,
             Some(late) if late + settling > 0.0 => Some(Fault::Late(late + settling)),
             _ => Some(Fault::Other),
@@ -215,7 +211,7 @@ pub(super) fn folded(
 }
 
 /// Removes the faulty waits; in the first round, late ones get shorter pauses instead.
-pub(super) fn mended(
+pub(super) fn repaired(
     waits: Vec<RelocatedWait>,
     faults: &BTreeMap<usize, Fault>,
     first: bool,
@@ -235,7 +231,7 @@ pub(super) fn mended(
 const WAY_AND_BACK: usize = 2;
 
 /// Removes the settling time of a run and returns it, s.
-fn unsettle(event: &mut Event) -> f64 {
+fn remove_settling(event: &mut Event) -> f64 {
     let What::Run(run) = &mut event.what else { return 0.0 };
     let settling = std::mem::take(&mut run.settling);
     if let Some(last) = run.moves.last_mut() {
@@ -247,7 +243,7 @@ fn unsettle(event: &mut Event) -> f64 {
 
 /// Excess time of the three events (way out, standing, way back) over the wait, s; `None` if they
 /// are not these or exceed limits.
-fn excess(
+fn excess_time(
     model: &Model,
     settings: &Settings,
     parts: &[Event],
@@ -269,10 +265,10 @@ fn excess(
         let seen = check(model, &run.load, tool, stream, room, body.as_ref());
         seen.holds()
             && run.load == record.load
-            && apart(stream.end(), intended.end()) <= ENDPOINT_TOLERANCE
-            && apart(stream.start(), intended.start()) <= ENDPOINT_TOLERANCE
+            && are_close(stream.end(), intended.end(), ENDPOINT_TOLERANCE)
+            && are_close(stream.start(), intended.start(), ENDPOINT_TOLERANCE)
     });
-    let stands = apart(&record.q, there.end()) <= ENDPOINT_TOLERANCE;
+    let stands = are_close(&record.q, there.end(), ENDPOINT_TOLERANCE);
     let time: f64 = parts.iter().map(|event| event.duration).sum();
     (ways_hold && stands).then_some(time - wait.duration)
 }

@@ -1,6 +1,6 @@
 //! Emits and verifies repeatedly: each round removes the pieces that failed the verification.
 
-use super::candidate::{Candidate, State, with_states};
+use super::candidate::{Candidate, State, with_states, with_stream};
 use super::emission_context::EmissionContext;
 use super::error::RetrofitError;
 use super::figures::LowerLimits;
@@ -9,17 +9,17 @@ use super::job::Job;
 use super::lower_limits;
 use super::outputs::{Outputs, emitted};
 use super::planning::Planning;
-use super::relocated_waits::{RelocatedWait, mended};
+use super::relocated_waits::{RelocatedWait, repaired};
 use super::rewritten::Rewritten;
 use super::settings::{Budget, Objective};
 use super::torque_demand::TorqueBound;
 use super::uncertainty::uncertain;
 use super::verify::{Attempt, Rewrite, verify};
+use super::verify_streams::all_failed;
 use crate::retime::optimize::allowed::Loads;
-use crate::retime::optimize::reason::Reason;
 
 /// Maximum number of rounds; the last one keeps no stream.
-const MOST_ROUNDS: usize = 12;
+const MAX_ROUNDS: usize = 12;
 
 /// The program with the streams and waits that pass the verification.
 pub(super) fn verified(
@@ -40,7 +40,7 @@ pub(super) fn verified(
         let outputs = emitted(context, original, &candidates, &waits)?;
         let rewrite = Rewrite::Streams { candidates: &candidates, waits: &waits };
         let attempt = verify(original, &outputs.files, model, &settings, rewrite);
-        let is_unchanged = waits.is_empty() && candidates.iter().all(|c| c.retiming().is_none());
+        let is_unchanged = waits.is_empty() && with_stream(&candidates).next().is_none();
         if attempt.verification.passed || is_unchanged {
             let bound = torque_bound.as_mut();
             let (lower_limits, changes) =
@@ -61,17 +61,14 @@ pub(super) fn verified(
         }
         rounds += 1;
         if !attempt.wait_faults.is_empty() {
-            waits = mended(waits, &attempt.wait_faults, rounds == 1);
+            waits = repaired(waits, &attempt.wait_faults, rounds == 1);
             continue;
         }
         let mut failed = attempt.failed;
-        if failed.is_empty() || rounds == MOST_ROUNDS {
+        if failed.is_empty() || rounds == MAX_ROUNDS {
             // The fault has no single cause: all streams are refused.
             let why = attempt.verification.broken().unwrap_or("the verification failed");
-            let reason = Reason::Verification(format!("did not hold: {why}"));
-            let streams = candidates.iter().enumerate().filter(|(_, c)| c.retiming().is_some());
-            let all: Vec<_> = streams.map(|(index, _)| (index, reason.clone())).collect();
-            failed.splice(0..0, all);
+            failed.splice(0..0, all_failed(&candidates, &format!("did not hold: {why}")));
         }
         let refused = failed.into_iter().map(|(index, reason)| (index, State::Refused(reason)));
         candidates = with_states(candidates, refused);

@@ -10,7 +10,7 @@ use crate::retime::optimize::reason::Reason;
 use crate::retime::optimize::retime::{Goal, Retiming, Task, retime};
 
 /// Maximum number of new distributions of the cycle time.
-const MOST_SHARINGS: usize = 4;
+const MAX_REDISTRIBUTIONS: usize = 4;
 
 /// A stream for each task of a plan, or the reason for none. `progress` receives the number of
 /// finished tasks and the total.
@@ -23,7 +23,7 @@ pub(super) fn streams(
     let done = AtomicUsize::new(0);
     let outcomes = tasks.par_iter().zip(&plan.goals).map(|((_, task), goal)| {
         let outcome = match budget {
-            Budget::AsBefore => useful(task, *goal),
+            Budget::AsBefore => retimed_or_as_before(task, *goal),
             Budget::Takt(_) | Budget::Factor(_) => retime(task, *goal),
         };
         progress(done.fetch_add(1, Ordering::Relaxed) + 1, tasks.len());
@@ -35,7 +35,7 @@ pub(super) fn streams(
 type Outcome = Result<Retiming, Reason>;
 
 /// A stream for the goal, or else in the original time of the run.
-fn useful(task: &Task<'_>, goal: Goal) -> Outcome {
+fn retimed_or_as_before(task: &Task<'_>, goal: Goal) -> Outcome {
     let outcome = retime(task, goal);
     if goal == within_before(task) { outcome } else { outcome.or_else(|_| as_before(task)) }
 }
@@ -50,20 +50,20 @@ fn within_before(task: &Task<'_>) -> Goal {
 }
 
 /// Time \[s\] and motion energy \[J\] of the original run.
-fn taken_before(task: &Task<'_>) -> (f64, f64) {
+fn original_time_and_energy(task: &Task<'_>) -> (f64, f64) {
     (task.run.duration(), task.energy_before.motion_energy_j())
 }
 
 /// Time \[s\] and motion energy \[J\] of each run after its outcome.
-fn taken(tasks: &[(usize, Task<'_>)], outcomes: &[Outcome]) -> Vec<(f64, f64)> {
+fn times_and_energies(tasks: &[(usize, Task<'_>)], outcomes: &[Outcome]) -> Vec<(f64, f64)> {
     let pairs = tasks.iter().zip(outcomes);
-    pairs.map(|((_, task), outcome)| taken_with(task, outcome)).collect()
+    pairs.map(|((_, task), outcome)| time_and_energy(task, outcome)).collect()
 }
 
-fn taken_with(task: &Task<'_>, outcome: &Outcome) -> (f64, f64) {
+fn time_and_energy(task: &Task<'_>, outcome: &Outcome) -> (f64, f64) {
     match outcome {
         Ok(retiming) => (retiming.duration_s, retiming.energy.motion_energy_j()),
-        Err(_) => taken_before(task),
+        Err(_) => original_time_and_energy(task),
     }
 }
 
@@ -75,25 +75,27 @@ fn all_as_before(tasks: &[(usize, Task<'_>)], outcomes: Vec<Outcome>) -> Vec<Out
 
 /// If a run misses its goal, the others have too much time: the time is distributed again. If that
 /// fails, every run returns to its original time.
-pub(super) fn keep_to_the_cycle(
+pub(super) fn enforce_cycle_time(
     mut plan: Plan,
     tasks: &[(usize, Task<'_>)],
     mut outcomes: Vec<Outcome>,
 ) -> (Plan, Vec<Outcome>) {
     let times = |outcomes: &[Outcome]| -> Vec<f64> {
-        taken(tasks, outcomes).into_iter().map(|(time, _)| time).collect()
+        times_and_energies(tasks, outcomes).into_iter().map(|(time, _)| time).collect()
     };
-    for _ in 0..MOST_SHARINGS {
+    for _ in 0..MAX_REDISTRIBUTIONS {
         let times = times(&outcomes);
         if plan.holds(&times) {
             break;
         }
-        let changed = plan.share_anew(&times);
+        let changed = plan.redistribute(&times);
         if changed.is_empty() {
             break;
         }
-        let found: Vec<Outcome> =
-            changed.par_iter().map(|i| useful(&tasks[*i].1, plan.goals[*i])).collect();
+        let found: Vec<Outcome> = changed
+            .par_iter()
+            .map(|i| retimed_or_as_before(&tasks[*i].1, plan.goals[*i]))
+            .collect();
         for (i, outcome) in changed.into_iter().zip(found) {
             outcomes[i] = outcome;
         }
@@ -107,13 +109,14 @@ pub(super) fn keep_to_the_cycle(
 /// A run may take more energy than before if its time saves more in other runs or in waits. If the
 /// cycle costs less without it, it returns to its original time; if the whole saves nothing, all
 /// runs do.
-pub(super) fn leave_what_does_not_pay(
+pub(super) fn undo_costly_streams(
     plan: &Plan,
     tasks: &[(usize, Task<'_>)],
     mut outcomes: Vec<Outcome>,
 ) -> Vec<Outcome> {
-    let mut now = taken(tasks, &outcomes);
-    let before: Vec<(f64, f64)> = tasks.iter().map(|(_, task)| taken_before(task)).collect();
+    let mut now = times_and_energies(tasks, &outcomes);
+    let before: Vec<(f64, f64)> =
+        tasks.iter().map(|(_, task)| original_time_and_energy(task)).collect();
     let excess = |i: usize| now[i].1 - before[i].1;
     let mut costly: Vec<usize> = (0..tasks.len()).filter(|i| excess(*i) > 0.0).collect();
     costly.sort_by(|a, b| excess(*b).total_cmp(&excess(*a)));
@@ -123,7 +126,7 @@ pub(super) fn leave_what_does_not_pay(
         let slower = std::mem::replace(&mut now[i], before[i]);
         if plan.cost(&now) < cost {
             outcomes[i] = as_before(task);
-            now[i] = taken_with(task, &outcomes[i]);
+            now[i] = time_and_energy(task, &outcomes[i]);
         } else {
             now[i] = slower;
         }

@@ -1,16 +1,13 @@
 //! The search for the programmed speeds of least energy.
 
-use std::collections::BTreeMap;
-
 use super::cycle_time::cycle;
-use super::files::{OutputFile, Source, read_again, unchanged};
+use super::files::{OutputFile, Source, read_again, with_edits};
 use super::job::Job;
 use super::order::same_order;
 use super::read::read_program;
 use super::settings::{Budget, Objective};
 use super::simulated::{Simulated, TIME_TOLERANCE};
 use super::speed_slots::Slot;
-use crate::rapid::text::{self, Edit};
 use crate::retime::energy::EnergyParts;
 use crate::retime::motion::simulate;
 use crate::retime::optimize::cycle::TradeOff;
@@ -129,14 +126,5 @@ fn try_speeds(job: &Job<'_>, slots: &[Slot], factors: &[f64]) -> Option<Simulate
 /// The files of the program with these factors.
 fn with_speeds(files: &[Source], slots: &[Slot], factors: &[f64]) -> Option<Vec<OutputFile>> {
     let edits = slots.iter().zip(factors).flat_map(|(slot, factor)| slot.edits(*factor));
-    let mut by_file: BTreeMap<usize, Vec<Edit>> = BTreeMap::new();
-    for edit in edits {
-        by_file.entry(edit.span.file.0 as usize).or_default().push(edit);
-    }
-    let mut outputs = unchanged(files);
-    for (index, edits) in by_file {
-        let bytes = text::apply(&files[index].file.bytes, &edits).ok()?;
-        outputs[index] = OutputFile::changed(index, &files[index], bytes);
-    }
-    Some(outputs)
+    with_edits(files, edits)
 }

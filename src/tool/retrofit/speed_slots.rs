@@ -26,10 +26,10 @@ pub(super) struct Slot {
     pub(super) site: usize,
     /// The events in which it runs.
     pub(super) events: Vec<usize>,
-    speeds: Vec<Programmed>,
+    speeds: Vec<ProgrammedSpeed>,
 }
 
-struct Programmed {
+struct ProgrammedSpeed {
     argument: Argument,
     speed: Speed,
     /// Whether it is an upper limit.
@@ -86,7 +86,7 @@ fn slot(
 ) -> Result<Slot, &'static str> {
     let events: Vec<usize> =
         original.sites[site].variants.iter().flat_map(|v| v.events.iter().copied()).collect();
-    let mut speeds: BTreeMap<Span, Programmed> = BTreeMap::new();
+    let mut speeds: BTreeMap<Span, ProgrammedSpeed> = BTreeMap::new();
     for event in &events {
         let What::Run(run) = &original.cycle.simulation.events[*event].what else { continue };
         for movement in run.moves.iter().map(|record| &record.movement) {
@@ -94,7 +94,7 @@ fn slot(
                 return Err("its speed is not one argument that can be written anew");
             };
             let ceiling = settings.freedom.bound(movement) == Bound::Original;
-            let here = Programmed { argument, speed: movement.speed, ceiling };
+            let here = ProgrammedSpeed { argument, speed: movement.speed, ceiling };
             let known = speeds.entry(movement.span).or_insert(here);
             if known.speed != movement.speed {
                 return Err("its speed is another one in another execution");
@@ -105,25 +105,25 @@ fn slot(
 }
 
 /// The factor on a speed in a run with factor `factor`, limited by the ceiling.
-fn factor_of(programmed: &Programmed, factor: f64) -> f64 {
+fn factor_of(programmed: &ProgrammedSpeed, factor: f64) -> f64 {
     let most = if programmed.ceiling { 1.0 } else { (FASTEST / programmed.speed.tcp).max(1.0) };
     factor.min(most)
 }
 
 /// A `speeddata`. External axes do not move in changed runs.
-fn speed_text(Programmed { argument, speed, .. }: &Programmed, factor: f64) -> String {
+fn speed_text(ProgrammedSpeed { argument, speed, .. }: &ProgrammedSpeed, factor: f64) -> String {
     if let Some(datum) = &argument.datum {
-        let share = number(down(factor, 1e4), SHARE_DECIMALS);
+        let share = number(rounded_down(factor, 1e4), SHARE_DECIMALS);
         let scaled = ["v_tcp", "v_ori"].map(|part| format!("{share}*{datum}.{part}"));
         return format!("[{},{datum}.v_leax,{datum}.v_reax]", scaled.join(","));
     }
-    let tcp = down(speed.tcp * 1e3 * factor, 10.0);
-    let orientation = down(speed.orientation.to_degrees() * factor, 10.0);
+    let tcp = rounded_down(speed.tcp * 1e3 * factor, 10.0);
+    let orientation = rounded_down(speed.orientation.to_degrees() * factor, 10.0);
     format!("[{},{},5000,1000]", number(tcp, DECIMALS), number(orientation, DECIMALS))
 }
 
 /// Rounded down to a multiple of `1 / parts`, so that rounding never exceeds a ceiling.
-fn down(x: f64, parts: f64) -> f64 {
+fn rounded_down(x: f64, parts: f64) -> f64 {
     /// Rounding error of the arithmetic.
     const SLACK: f64 = 1e-9;
     (x * parts + SLACK).floor().max(1.0) / parts

@@ -8,7 +8,7 @@
 
 use std::collections::BTreeSet;
 
-use super::candidate::{State, candidates, with_states};
+use super::candidate::{State, candidates, pending, with_states};
 use super::figures::Verification;
 use super::files::unchanged;
 use super::job::Job;
@@ -47,9 +47,7 @@ pub(super) fn rewritten(job: &Job<'_>, progress: &dyn Fn(usize, usize)) -> Rewri
             Some(found) => reason = found,
         }
     }
-    let pending = candidates.iter().enumerate();
-    let pending = pending.filter(|(_, candidate)| matches!(candidate.state, State::Pending));
-    let refused = pending.map(|(index, candidate)| {
+    let refused = pending(&candidates).map(|(index, candidate)| {
         let is_tried = slots.iter().any(|slot| slot.site == candidate.site);
         let reason = if is_tried { reason.clone() } else { Reason::NoSaving };
         (index, State::Refused(reason))

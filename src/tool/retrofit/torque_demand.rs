@@ -24,12 +24,12 @@ use crate::retime::path::joint_path::DOF;
 const ENOUGH: f64 = 0.95;
 /// Sampling step \[s\], and the factor that allows for peaks between samples.
 const STEP: f64 = 0.01;
-const BETWEEN: f64 = 1.01;
+const SAMPLING_MARGIN: f64 = 1.01;
 
 /// Maximum number of plans of a stream, and the extra reduction of torque per plan: a torque at its
 /// limit in one robot exceeds it in others.
-const MOST_PLANS: usize = 4;
-const LESS: f64 = 0.99;
+const MAX_PLANS: usize = 4;
+const REDUCTION: f64 = 0.99;
 
 /// Whether the torque limits are estimates.
 fn is_estimated(model: &Model) -> bool {
@@ -79,7 +79,7 @@ impl PeakTorques {
             let pairs = self.0.iter().zip(&original.0);
             let mut ratios: Vec<f64> =
                 pairs.map(|(new, old)| new[j] / old[j].max(f64::MIN_POSITIVE)).collect();
-            let within = ratios.iter().filter(|ratio| **ratio <= BETWEEN).count();
+            let within = ratios.iter().filter(|ratio| **ratio <= SAMPLING_MARGIN).count();
             let share = within as f64 / ratios.len().max(1) as f64;
             if share < ENOUGH && exceeds.is_none() {
                 exceeds = Some((j + 1, share));
@@ -118,7 +118,7 @@ impl<'a> TorqueBound<'a> {
         candidates: &[Candidate],
         planning: &Planning<'_>,
     ) -> Vec<(usize, State)> {
-        let mut asking = Vec::new();
+        let mut exceeding = Vec::new();
         for (index, candidate) in candidates.iter().enumerate() {
             let Some(stream) = candidate.retiming() else { continue };
             let Some(event) = self.job.original.events(candidate).first() else { continue };
@@ -130,14 +130,14 @@ impl<'a> TorqueBound<'a> {
                 *plans += 1;
                 for (torque, ratio) in torques.iter_mut().zip(ratios) {
                     if ratio > 1.0 {
-                        *torque *= LESS / ratio;
+                        *torque *= REDUCTION / ratio;
                     }
                 }
-                let again = (*plans <= MOST_PLANS).then_some((*torques, stream.duration_s));
-                asking.push((index, again, Reason::AsksMore(joint, share)));
+                let again = (*plans <= MAX_PLANS).then_some((*torques, stream.duration_s));
+                exceeding.push((index, again, Reason::AsksMore(joint, share)));
             }
         }
-        let states = asking.par_iter().map(|(index, again, reason)| {
+        let states = exceeding.par_iter().map(|(index, again, reason)| {
             let stream = again.and_then(|(torques, within)| {
                 let mut freedom = planning.settings.freedom.clone();
                 let loads = freedom.loads.as_mut()?;

@@ -1,6 +1,6 @@
 //! Energies and savings over plausible robots.
 
-use super::candidate::{Candidate, State};
+use super::candidate::{Candidate, State, with_stream};
 use super::job::Original;
 use super::padding::Padding;
 use super::simulated::Simulated;
@@ -48,8 +48,7 @@ pub(super) fn uncertain(
         let share = share(model, robots, saved, moments);
         (share < ENOUGH).then_some(State::Refused(Reason::UncertainSaving(share)))
     };
-    let streams = candidates.iter().enumerate().filter(|(_, c)| c.retiming().is_some());
-    streams.filter_map(|(index, candidate)| Some((index, weak(candidate)?))).collect()
+    with_stream(candidates).filter_map(|(index, c)| Some((index, weak(c)?))).collect()
 }
 
 /// The share of the robots whose motion energy of the whole cycle falls.

@@ -9,11 +9,12 @@ use super::files::{OutputFile, OutputKind, Source, read_again};
 use super::job::Original;
 use super::order::same_order;
 use super::read::read_program;
-use super::relocated_waits::{Fault, RelocatedWait, folded};
+use super::relocated_waits::{Fault, RelocatedWait, with_waits_folded};
 use super::settings::{Budget, Settings};
 use super::simulated::{Simulated, TIME_TOLERANCE};
 use super::speed_slots::Slot;
-use super::{verify_speeds, verify_streams};
+use super::verify_speeds::compare_speeds;
+use super::verify_streams::{all_failed, compare_streams, reordering, slowing};
 use crate::arm::robot::Model;
 use crate::rapid::syntax;
 use crate::retime::motion::{Options, Simulation, simulate};
@@ -87,14 +88,16 @@ pub(super) fn verify(
         verification.note("every byte of the original is kept", bytes_kept);
         text_holds &= bytes_kept;
     }
-    let Ok(simulation) = run_again(outputs, &settings.entry, model, &settings.options) else {
+    let simulation = run_again(outputs, &settings.entry, model, &settings.options);
+    let simulation = simulation.unwrap_or_else(|_| {
         verification.note("the emitted program has its entry", false);
-        return unreadable(model, verification, rewrite);
-    };
+        text_holds = false;
+        empty_simulation()
+    });
     let mut simulated = Simulated::with_energy(model, simulation);
     let mut wait_faults = BTreeMap::new();
     if let Rewrite::Streams { waits, .. } = rewrite {
-        (simulated, wait_faults) = folded(model, settings, simulated, waits);
+        (simulated, wait_faults) = with_waits_folded(model, settings, simulated, waits);
         verification.note("waits that are spent elsewhere take their time", wait_faults.is_empty());
     }
     let before = &original.cycle.simulation;
@@ -108,11 +111,11 @@ pub(super) fn verify(
         Rewrite::Streams { candidates, waits } => {
             let emitted = &attempt.simulated.simulation;
             attempt.failed = if !text_holds {
-                verify_streams::all_failed(candidates, "the emitted text could not be read again")
+                all_failed(candidates, "the emitted text could not be read again")
             } else if !order_kept && waits.is_empty() {
-                verify_streams::reordering(original, emitted, candidates)
+                reordering(original, emitted, candidates)
             } else if order_kept && !cycle_kept {
-                verify_streams::slowing(original, emitted, candidates)
+                slowing(original, emitted, candidates)
             } else {
                 Vec::new()
             };
@@ -122,25 +125,15 @@ pub(super) fn verify(
                     attempt.wait_faults.entry(index).or_insert(Fault::Other);
                 }
             } else if attempt.failed.is_empty() {
-                let figures =
-                    verify_streams::compared(original, emitted, model, settings, candidates);
-                let held = figures.failed.is_empty();
-                attempt.failed = figures.failed;
                 let verification = &mut attempt.verification;
-                verification.worst = figures.worst;
-                verification.intended_error_rad = figures.intended_error_rad;
-                verification.note("every stream keeps limits, path and ends", held);
-                verification.note("every stream runs as intended at each moment", held);
+                attempt.failed =
+                    compare_streams(original, emitted, model, settings, candidates, verification);
             }
         }
         Rewrite::Speeds { slots, factors } if order_kept => {
             let emitted = &attempt.simulated.simulation;
-            let speeds = (slots, factors);
-            let figures = verify_speeds::compared(original, emitted, model, settings, speeds);
-            let verification = &mut attempt.verification;
-            verification.worst = figures.worst;
-            verification.note("targets and zones are those of before", figures.same_paths);
-            verification.note("no programmed speed is exceeded", figures.keeps_ceilings);
+            let (speeds, verification) = ((slots, factors), &mut attempt.verification);
+            compare_speeds(original, emitted, model, settings, speeds, verification);
         }
         Rewrite::Speeds { .. } => {}
     }
@@ -148,28 +141,15 @@ pub(super) fn verify(
     attempt
 }
 
-/// The result for an emitted program that cannot be read.
-fn unreadable(model: &Model, verification: Verification, rewrite: Rewrite<'_>) -> Attempt {
-    let nothing = Simulation {
+/// The simulation of a program that cannot be read.
+fn empty_simulation() -> Simulation {
+    Simulation {
         events: Vec::new(),
         cycle_s: 0.0,
         repeats_from: None,
         unresolved: Vec::new(),
         assumed: Vec::new(),
         inputs_asked: BTreeSet::new(),
-    };
-    let why = "the emitted text could not be read again";
-    let (failed, waits) = match rewrite {
-        Rewrite::Streams { candidates, waits } => {
-            (verify_streams::all_failed(candidates, why), waits.len())
-        }
-        Rewrite::Speeds { .. } => (Vec::new(), 0),
-    };
-    Attempt {
-        simulated: Simulated::with_energy(model, nothing),
-        verification,
-        failed,
-        wait_faults: (0..waits).map(|index| (index, Fault::Other)).collect(),
     }
 }
 

@@ -2,7 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::candidate::Candidate;
+use super::candidate::{Candidate, with_stream};
+use super::figures::Verification;
 use super::job::Original;
 use super::order::same_event;
 use super::settings::Settings;
@@ -26,25 +27,17 @@ const INTENDED_TOLERANCE: f64 = 1e-6;
 /// Time step of this comparison, s.
 const STEP: f64 = 0.002;
 
-pub(super) struct StreamFigures {
-    /// Worst figures of all streams.
-    pub(super) worst: Check,
-    /// Largest distance of a joint from the intended stream at any time, rad.
-    pub(super) intended_error_rad: f64,
-    /// Candidates whose streams fail, with the reason.
-    pub(super) failed: Vec<(usize, Reason)>,
-}
-
-/// Compares the streams of an emitted program that has the events of the original.
-pub(super) fn compared(
+/// Compares the streams of an emitted program that has the events of the original, and adds the
+/// result to `verification`. Returns the candidates whose streams fail, with the reason.
+pub(super) fn compare_streams(
     original: &Original<'_>,
     emitted: &Simulation,
     model: &Model,
     settings: &Settings,
     candidates: &[Candidate],
-) -> StreamFigures {
-    let mut figures =
-        StreamFigures { worst: Check::none(), intended_error_rad: 0.0, failed: Vec::new() };
+    verification: &mut Verification,
+) -> Vec<(usize, Reason)> {
+    let mut failed = Vec::new();
     let strict = settings.freedom.strict();
     for (index, candidate) in candidates.iter().enumerate() {
         let Some(retiming) = candidate.retiming() else { continue };
@@ -57,23 +50,26 @@ pub(super) fn compared(
                 (&original.cycle.simulation.events[*event], &emitted.events[*event]);
             match compare(model, freedom, before, after, &retiming.stream) {
                 Ok((check, distance)) => {
-                    figures.worst = figures.worst.max(&check);
-                    figures.intended_error_rad = figures.intended_error_rad.max(distance);
+                    verification.worst = verification.worst.max(&check);
+                    let intended_error_rad = &mut verification.intended_error_rad;
+                    *intended_error_rad = intended_error_rad.max(distance);
                 }
                 Err(why) => {
-                    figures.failed.push((index, Reason::Verification(why.to_owned())));
+                    failed.push((index, Reason::Verification(why.to_owned())));
                     break;
                 }
             }
         }
     }
-    figures
+    verification.note("every stream keeps limits, path and ends", failed.is_empty());
+    verification.note("every stream runs as intended at each moment", failed.is_empty());
+    failed
 }
 
 /// All candidates with streams, with this reason.
 pub(super) fn all_failed(candidates: &[Candidate], why: &str) -> Vec<(usize, Reason)> {
-    let streams = candidates.iter().enumerate().filter(|(_, c)| c.retiming().is_some());
-    streams.map(|(index, _)| (index, Reason::Verification(why.to_owned()))).collect()
+    let reason = || Reason::Verification(why.to_owned());
+    with_stream(candidates).map(|(index, _)| (index, reason())).collect()
 }
 
 /// The stream at or before the first event that differs; all streams if there is none.
@@ -92,8 +88,9 @@ pub(super) fn reordering(
 }
 
 fn streams(original: &Original<'_>, candidates: &[Candidate]) -> BTreeMap<usize, usize> {
-    let streams = candidates.iter().enumerate().filter(|(_, c)| c.retiming().is_some());
-    streams.flat_map(|(i, c)| original.events(c).iter().map(move |event| (*event, i))).collect()
+    with_stream(candidates)
+        .flat_map(|(i, c)| original.events(c).iter().map(move |event| (*event, i)))
+        .collect()
 }
 
 /// The streams that precede an unchanged movement that takes longer than before.

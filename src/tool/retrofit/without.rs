@@ -2,6 +2,8 @@
 //!
 //! A retrofit only inserts text; the names of its module identify the insertions.
 
+use memchr::memmem;
+
 use crate::rapid::ir::hir::{Block, Expr, ExprKind, Routine, Stmt, StmtKind};
 use crate::rapid::ir::lower;
 use crate::rapid::syntax;
@@ -15,12 +17,12 @@ const COUNTERS: &[u8] = b"ByStream{";
 
 /// Whether a file is a module of streams.
 pub fn is_streams(bytes: &[u8]) -> bool {
-    find(bytes, HEAD).is_some()
+    memmem::find(bytes, HEAD).is_some()
 }
 
 /// The name prefix of a module of streams; `None` for a continuation module.
 pub fn prefix(bytes: &[u8]) -> Option<String> {
-    let end = find(bytes, COUNTERS)?;
+    let end = memmem::find(bytes, COUNTERS)?;
     let is_word = |b: &u8| b.is_ascii_alphanumeric() || *b == b'_';
     let length = bytes[..end].iter().rev().take_while(|b| is_word(b)).count();
     String::from_utf8(bytes[end - length..end].to_vec()).ok()
@@ -29,22 +31,23 @@ pub fn prefix(bytes: &[u8]) -> Option<String> {
 /// The bytes of a file without the guards and records of the module with this prefix.
 pub fn without_streams(file: &SourceFile, prefix: &str) -> Vec<u8> {
     let parse = syntax::parse(&file.bytes);
-    let mut found = Found { bytes: &file.bytes, prefix: prefix.to_lowercase(), edits: Vec::new() };
+    let prefix = prefix.to_lowercase();
+    let mut remover = StreamRemover { bytes: &file.bytes, prefix, edits: Vec::new() };
     for module in lower(file.id, &parse, &file.bytes) {
         for block in module.routines.iter().flat_map(Routine::blocks) {
-            found.block(block);
+            remover.block(block);
         }
     }
-    apply(&file.bytes, &found.edits).unwrap_or_else(|_| file.bytes.clone())
+    apply(&file.bytes, &remover.edits).unwrap_or_else(|_| file.bytes.clone())
 }
 
-struct Found<'a> {
+struct StreamRemover<'a> {
     bytes: &'a [u8],
     prefix: String,
     edits: Vec<Edit>,
 }
 
-impl Found<'_> {
+impl StreamRemover<'_> {
     fn block(&mut self, block: &Block) {
         for stmt in block {
             match &stmt.kind {
@@ -134,8 +137,4 @@ impl Found<'_> {
         let span = Span { start: start as u32, end: end as u32, ..of };
         self.edits.push(Edit { span, text: Vec::new() });
     }
-}
-
-fn find(bytes: &[u8], part: &[u8]) -> Option<usize> {
-    bytes.windows(part.len()).position(|window| window == part)
 }

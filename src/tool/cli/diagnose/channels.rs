@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::super::common::{self, CellArgs, ProgramArgs};
-use super::super::logs::Ready;
+use super::super::logs::PreparedLog;
 use crate::gap::{Powers, Run};
 use crate::learn::identify::Source;
 use crate::learn::log::Channel;
@@ -13,11 +13,11 @@ use crate::tool::report::place::Places;
 use crate::tool::retrofit::read_program;
 
 /// Mean powers of the motions in logs with power.
-pub(super) fn powers(logs: &[Ready]) -> Vec<Powers> {
+pub(super) fn powers(logs: &[PreparedLog]) -> Vec<Powers> {
     logs.iter().filter_map(power).collect()
 }
 
-fn power(log: &Ready) -> Option<Powers> {
+fn power(log: &PreparedLog) -> Option<Powers> {
     let measured = log.log.column(Channel::Power)?;
     let time = log.log.time();
     let samples = &log.samples;
@@ -44,7 +44,7 @@ fn power(log: &Ready) -> Option<Powers> {
 }
 
 /// Program runs in logs that mark the movements.
-pub(super) fn runs(logs: &[Ready]) -> Vec<Run> {
+pub(super) fn runs(logs: &[PreparedLog]) -> Vec<Run> {
     logs.iter()
         .filter_map(|log| {
             let command = log.log.column(Channel::Command)?;
@@ -59,9 +59,6 @@ pub(super) fn runs(logs: &[Ready]) -> Vec<Run> {
 }
 
 /// File and line of each movement of a program.
-///
-/// # Errors
-/// The program cannot be run.
 pub(super) fn lines(program: &Path, robot: &str) -> anyhow::Result<Vec<(String, usize)>> {
     let cell = CellArgs {
         paths: vec![program.to_path_buf()],

@@ -1,12 +1,10 @@
-//! Parses planes, boxes and number lists of options.
+//! Parses planes and boxes of options.
 
-use anyhow::{Context, bail};
+use anyhow::bail;
 use nalgebra::{Point3, Vector3};
 
 use crate::arm::kinematics::{KeepOut, Plane};
-
-/// Upper limit of any length, in m or mm.
-const BEYOND: f64 = 1e6;
+use crate::tool::cli::common::numbers;
 
 pub(super) fn plane(text: &str) -> anyhow::Result<Plane> {
     let help = "a normal and a distance in m, such as 1,0,0,-0.8";
@@ -27,15 +25,4 @@ pub(super) fn keep_out(text: &str) -> anyhow::Result<KeepOut> {
         bail!("--box {text}: it has no volume; give {help}");
     }
     Ok(keep_out)
-}
-
-pub(super) fn numbers<const N: usize>(
-    option: &str,
-    text: &str,
-    help: &str,
-) -> anyhow::Result<[f64; N]> {
-    let wrong = || format!("{option} {text}: give {help}");
-    let values: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
-    let values = values.ok().filter(|x| x.iter().all(|x: &f64| x.abs() < BEYOND));
-    values.and_then(|x| <[f64; N]>::try_from(x).ok()).with_context(wrong)
 }

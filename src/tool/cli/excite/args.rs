@@ -9,16 +9,16 @@ use crate::learn::excite::State;
 use crate::tool::cli::common::Format;
 
 /// Maximum distance of adaptive points from the path \[rad\].
-const OFF_PATH: f64 = 1e-3;
+const PATH_TOLERANCE: f64 = 1e-3;
 /// Maximum time between points \[s\].
-pub(super) const WIDEST: f64 = 0.1;
+pub(super) const MAX_SPACING: f64 = 0.1;
 
-/// A motion that lets a robot's parameters be told from its torques, as RAPID with a logger.
+/// Design a motion that identifies a robot's parameters from its torques, as RAPID with a logger.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: joulepath excite --robot IRB1600-10/1.45 --plane \"1,0,0,-0.8\" --out excitation"
 )]
-pub struct ExciteArgs {
+pub(in crate::tool::cli) struct ExciteArgs {
     /// The robot: a name (joulepath robots list) or a robot file.
     #[arg(long, value_name = "NAME|FILE")]
     pub(super) robot: String,
@@ -27,7 +27,7 @@ pub struct ExciteArgs {
     #[arg(long, value_name = "DIR")]
     pub(super) out: PathBuf,
 
-    /// What is to be told.
+    /// What the motion identifies.
     #[arg(long, value_enum, default_value_t = Variant::Full)]
     pub(super) variant: Variant,
 
@@ -60,11 +60,11 @@ pub struct ExciteArgs {
     #[arg(long, allow_negative_numbers = true, value_name = "SECONDS", default_value = "0.01")]
     pub(super) spacing: Spacing,
 
-    /// Where the logger has torques from.
+    /// Where the logger reads torques from.
     #[arg(long, value_enum, default_value_t = TorqueArg::TestSignal)]
     pub(super) torque: TorqueArg,
 
-    /// Where the tool reaches, tool0, mm.
+    /// The tool centre point in tool0, mm.
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub(super) tool: Option<String>,
 
@@ -118,7 +118,7 @@ impl Spacing {
                 let hardest = states.iter().flat_map(|[_, _, qdd]| qdd.iter());
                 let hardest = hardest.fold(0.0, |m: f64, x| m.max(x.abs()));
                 // The corner at a point is cut by q̈ Δt²/8.
-                (8.0 * OFF_PATH / hardest).sqrt().min(WIDEST)
+                (8.0 * PATH_TOLERANCE / hardest).sqrt().min(MAX_SPACING)
             }
         }
     }

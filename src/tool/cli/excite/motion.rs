@@ -11,15 +11,15 @@ use crate::learn::excite::{
 use crate::tool::cli::common::progress;
 
 /// Row interval of the table \[s\]: the grid on which limits are checked.
-pub(super) const FINE: f64 = 0.001;
+pub(super) const TABLE_STEP: f64 = 0.001;
 /// Resolution of the time between RAPID points \[s\].
 const TICK: f64 = 1e-4;
 /// Maximum factor on the number of points per period that makes the spacing a multiple of the tick.
-const MORE_POINTS: f64 = 1.3;
+const MAX_POINT_FACTOR: f64 = 1.3;
 /// Factor on the point spacing for straight moves.
-const EVEN: f64 = 10.0;
+const PLATEAU_SPACING_FACTOR: f64 = 10.0;
 /// Number of repetitions that warm a robot up.
-const WARMING: usize = 120;
+const WARMING_CYCLES: usize = 120;
 
 /// A motion to write.
 pub(super) struct Motion {
@@ -34,7 +34,7 @@ pub(super) struct Motion {
     pub(super) checked: Checked,
 }
 
-pub(super) fn designed(
+pub(super) fn designed_motion(
     args: &ExciteArgs,
     model: &Model,
     settings: &Design,
@@ -55,7 +55,7 @@ pub(super) fn designed(
             && checked.to_itself >= 0.0
     };
     let Some((series, blends)) = blends(model, &found.series, &fits) else {
-        bail!("no way from rest into the motion keeps the limits: give another --seed");
+        bail!("no blend from rest into the motion keeps the limits: give another --seed");
     };
     let states = sampled(&series);
     // A period has a whole number of points; a slow motion needs no more points.
@@ -63,9 +63,12 @@ pub(super) fn designed(
         Spacing::Seconds(_) => args.base_frequency / settings.base_frequency,
         Spacing::Adaptive => 1.0,
     } * args.spacing.seconds(&states);
-    let points = whole(series.period(), spacing);
-    let cycles =
-        if args.variant == Variant::Warming { WARMING.max(args.cycles) } else { args.cycles };
+    let points = points_per_period(series.period(), spacing);
+    let cycles = if args.variant == Variant::Warming {
+        WARMING_CYCLES.max(args.cycles)
+    } else {
+        args.cycles
+    };
     Ok(Motion {
         period: series.period(),
         cycles,
@@ -79,9 +82,9 @@ pub(super) fn designed(
 
 /// Number of points per period, at most `spacing` \[s\] apart; if possible the spacing is a
 /// multiple of the tick, so that repetitions last exactly a period.
-fn whole(period: f64, spacing: f64) -> usize {
+fn points_per_period(period: f64, spacing: f64) -> usize {
     let least = (period / spacing - 1e-6).ceil().max(3.0) as usize;
-    let most = (MORE_POINTS * least as f64) as usize;
+    let most = (MAX_POINT_FACTOR * least as f64) as usize;
     let is_exact = |points: &usize| {
         let ticks = period / (TICK * *points as f64);
         (ticks - ticks.round()).abs() < 1e-6 * ticks
@@ -90,22 +93,22 @@ fn whole(period: f64, spacing: f64) -> usize {
 }
 
 fn sampled(series: &Series) -> Vec<State> {
-    series.sampled((series.period() / FINE).round().max(1.0) as usize)
+    series.sampled((series.period() / TABLE_STEP).round().max(1.0) as usize)
 }
 
-pub(super) fn along_plateaus(
+pub(super) fn plateau_motion(
     args: &ExciteArgs,
     model: &Model,
     settings: &Design,
     body: &Body<'_>,
     plateaus: &Plateaus,
 ) -> Motion {
-    let states = plateaus.sampled(FINE);
+    let states = plateaus.sampled(TABLE_STEP);
     Motion {
         period: plateaus.duration(),
         cycles: 1,
         points: plateaus.sampled(match args.spacing {
-            Spacing::Seconds(seconds) => EVEN * seconds,
+            Spacing::Seconds(seconds) => PLATEAU_SPACING_FACTOR * seconds,
             Spacing::Adaptive => args.spacing.seconds(&states),
         }),
         blends: None,

@@ -14,7 +14,7 @@ use crate::tool::cli::output;
 use crate::tool::emit::{Excitation, LoggedTorques, Points, excitation};
 
 /// Distance of the marks from the middle of joint 1's motion, as share of its range of motion.
-const MARKS: f64 = 0.02;
+const MARK_SHARE: f64 = 0.02;
 
 /// Writes the modules and the table; returns their paths.
 pub(super) fn write(
@@ -51,7 +51,7 @@ pub(super) fn write(
     let low = first.iter().copied().fold(f64::INFINITY, f64::min);
     let high = first.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let (middle, range) = (0.5 * (low + high), high - low);
-    let modules = excitation(&Excitation {
+    let [motion_module, logger] = excitation(&Excitation {
         title: title(args.variant).to_owned(),
         robot: model.name.clone(),
         cycles: motion.cycles,
@@ -60,12 +60,12 @@ pub(super) fn write(
         start: start.unwrap_or_default(),
         lists,
         stop: stop.unwrap_or_default(),
-        marks: [middle - MARKS * range, middle + MARKS * range],
+        marks: [middle - MARK_SHARE * range, middle + MARK_SHARE * range],
         torques: logged_torques(args.torque, model)?,
     })?;
     let mut outputs = Vec::new();
     let table = table(model, load, motion);
-    for (name, text) in [modules.motion, modules.logger, ("excitation.csv".to_owned(), table)] {
+    for (name, text) in [motion_module, logger, ("excitation.csv".to_owned(), table)] {
         let path = args.out.join(name);
         output::write(&path, text.as_bytes())?;
         outputs.push(path.display().to_string());

@@ -14,40 +14,34 @@ const MODULES: [&str; 5] = ["mod", "sys", "prg", "modx", "sysx"];
 /// Extension of a program file, which lists modules.
 const PROGRAM: &str = "pgf";
 /// Searched extensions, for messages.
-const SOUGHT: &str = ".mod, .sys, .prg, .modx, .sysx or .pgf";
+const EXTENSIONS: &str = ".mod, .sys, .prg, .modx, .sysx or .pgf";
 /// Maximum depth of folders.
 const MAX_FOLDERS: usize = 32;
 
 /// A file or folder that could not be read.
 #[derive(Clone, Debug)]
-pub struct Unreadable {
+pub(in crate::tool::cli) struct Unreadable {
     /// Its path.
-    pub path: String,
+    pub(in crate::tool::cli) path: String,
     /// The reason.
-    pub reason: String,
+    pub(in crate::tool::cli) reason: String,
 }
 
 /// Why nothing was read.
 #[derive(Debug, Error)]
-pub enum InputError {
+pub(in crate::tool::cli) enum InputError {
     /// No path was given.
     #[error("no file or folder given; name a RAPID file, a folder or a .pgf program")]
     Nothing,
     /// The folder contains no RAPID.
     #[error(
-        "no RAPID in '{path}': looked in it and its folders for {SOUGHT}; name a file to read it \
+        "no RAPID in '{0}': looked in it and its folders for {EXTENSIONS}; name a file to read it \
          whatever its extension"
     )]
-    NoRapid {
-        /// The folder.
-        path: String,
-    },
+    NoRapid(String),
     /// None of the modules of a `.pgf` exists.
-    #[error("'{path}' lists no module that can be read; name the module files themselves")]
-    EmptyProgram {
-        /// The program file.
-        path: String,
-    },
+    #[error("'{0}' lists no module that can be read; name the module files themselves")]
+    EmptyProgram(String),
     /// A `.pgf` lists a file outside its folder, which would be copied and changed with the
     /// program.
     #[error(
@@ -65,16 +59,11 @@ pub enum InputError {
         why: &'static str,
     },
     /// The path cannot be read.
-    #[error("cannot read '{path}': {reason}; check the path and its permissions")]
-    Unreadable {
-        /// The path.
-        path: String,
-        /// The reason.
-        reason: String,
-    },
+    #[error("cannot read '{}': {}; check the path and its permissions", .0.path, .0.reason)]
+    Unreadable(Unreadable),
 }
 
-pub(super) struct Found {
+pub(super) struct FoundFile {
     pub(super) path: PathBuf,
     /// Its path relative to the input, with `/`.
     pub(super) relative: String,
@@ -88,14 +77,10 @@ pub(super) struct Found {
 pub(super) fn find(
     path: &Path,
     unreadable: &mut Vec<Unreadable>,
-) -> Result<Vec<Found>, InputError> {
-    let metadata = fs::metadata(path)
-        .map_err(|error| InputError::Unreadable { path: shown(path), reason: error.to_string() })?;
-    if metadata.is_dir() {
-        if let Err(error) = fs::read_dir(path) {
-            let reason = error.to_string();
-            return Err(InputError::Unreadable { path: shown(path), reason });
-        }
+) -> Result<Vec<FoundFile>, InputError> {
+    let unusable = |error: std::io::Error| unreadable_input(path, error.to_string());
+    if fs::metadata(path).map_err(unusable)?.is_dir() {
+        fs::read_dir(path).map_err(unusable)?;
         let mut files = Vec::new();
         walk(path, 0, &mut files, unreadable);
         let (programs, mut modules): (Vec<PathBuf>, Vec<PathBuf>) =
@@ -112,7 +97,7 @@ pub(super) fn find(
         modules.sort_by_key(|file| shown(file));
         modules.dedup_by_key(|file| shown(file));
         if modules.is_empty() {
-            return Err(InputError::NoRapid { path: shown(path) });
+            return Err(InputError::NoRapid(shown(path)));
         }
         let modules = modules.into_iter().map(|file| found_below(path, file, false));
         return Ok(modules.chain(listings).collect());
@@ -123,19 +108,23 @@ pub(super) fn find(
     Ok(vec![found_below(path.parent().unwrap_or(Path::new("")), path.to_path_buf(), true)])
 }
 
-fn found_below(root: &Path, path: PathBuf, named: bool) -> Found {
-    let relative = path.strip_prefix(root).map_or_else(|_| file_name(&path), below);
-    Found { path, relative, named, modules: None }
+fn unreadable_input(path: &Path, reason: String) -> InputError {
+    InputError::Unreadable(Unreadable { path: shown(path), reason })
 }
 
-fn found_listing(root: &Path, path: PathBuf, modules: &[PathBuf]) -> Found {
+fn found_below(root: &Path, path: PathBuf, named: bool) -> FoundFile {
+    let relative = path.strip_prefix(root).map_or_else(|_| file_name(&path), relative_text);
+    FoundFile { path, relative, named, modules: None }
+}
+
+fn found_listing(root: &Path, path: PathBuf, modules: &[PathBuf]) -> FoundFile {
     let modules = modules.iter().map(|module| shown(module)).collect();
-    Found { modules: Some(modules), ..found_below(root, path, true) }
+    FoundFile { modules: Some(modules), ..found_below(root, path, true) }
 }
 
 /// Gives files with equal paths below `--out` distinct ones, relative to their deepest common
 /// folder.
-pub(super) fn tell_apart(found: &mut [Found]) {
+pub(super) fn make_distinct(found: &mut [FoundFile]) {
     let mut places = BTreeSet::new();
     if found.iter().all(|file| places.insert(file.relative.clone())) {
         return;
@@ -147,12 +136,12 @@ pub(super) fn tell_apart(found: &mut [Found]) {
     let mut shared = absolute[0].parent().map_or_else(PathBuf::new, Path::to_path_buf);
     while !absolute.iter().all(|path| path.starts_with(&shared)) && shared.pop() {}
     for (file, absolute) in found.iter_mut().zip(&absolute) {
-        file.relative = below(absolute.strip_prefix(&shared).unwrap_or(absolute));
+        file.relative = relative_text(absolute.strip_prefix(&shared).unwrap_or(absolute));
     }
 }
 
 /// A path without components that lead out of a folder.
-pub(super) fn below(path: &Path) -> String {
+pub(super) fn relative_text(path: &Path) -> String {
     let parts = path.components().filter_map(|part| match part {
         Component::Normal(name) => Some(name.to_string_lossy()),
         _ => None,
@@ -165,7 +154,7 @@ fn file_name(path: &Path) -> String {
 }
 
 /// The modules that a program file lists.
-fn program(path: &Path, unreadable: &mut Vec<Unreadable>) -> Result<Vec<Found>, InputError> {
+fn program(path: &Path, unreadable: &mut Vec<Unreadable>) -> Result<Vec<FoundFile>, InputError> {
     let modules = listed(path)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut files = Vec::new();
@@ -179,7 +168,7 @@ fn program(path: &Path, unreadable: &mut Vec<Unreadable>) -> Result<Vec<Found>, 
         }
     }
     if files.is_empty() {
-        return Err(InputError::EmptyProgram { path: shown(path) });
+        return Err(InputError::EmptyProgram(shown(path)));
     }
     files.push(listing);
     Ok(files)
@@ -188,8 +177,7 @@ fn program(path: &Path, unreadable: &mut Vec<Unreadable>) -> Result<Vec<Found>, 
 /// The paths between `<Module>` and `</Module>`, relative to the program file.
 fn listed(path: &Path) -> Result<Vec<PathBuf>, InputError> {
     const BEGIN: &str = "<Module>";
-    let unreadable = |reason| InputError::Unreadable { path: shown(path), reason };
-    let bytes = bytes_of(path).map_err(unreadable)?;
+    let bytes = bytes_of(path).map_err(|reason| unreadable_input(path, reason))?;
     let text = decode(&bytes).text;
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut modules = Vec::new();

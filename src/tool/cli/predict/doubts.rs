@@ -4,13 +4,13 @@ use crate::arm::robot::Model;
 use crate::learn::log::Motion;
 
 /// Tolerance outside a joint's range \[rad\].
-const OUTSIDE: f64 = 0.2;
+const RANGE_TOLERANCE: f64 = 0.2;
 /// Maximum ratio of logged speed to speed limit.
-const FASTER: f64 = 1.5;
+const MAX_SPEED_RATIO: f64 = 1.5;
 /// Maximum row interval for differentiation \[s\].
-const SPARSE: f64 = 0.5;
+const MAX_INTERVAL: f64 = 0.5;
 /// Minimum ratio of the position change to the integral of the rates.
-const LEAST: f64 = 0.05;
+const MIN_TURN_RATIO: f64 = 0.05;
 /// Figures from here on are shown with an exponent.
 const HUGE: f64 = 1e9;
 
@@ -29,7 +29,7 @@ fn position(model: &Model, motion: &Motion, joint: usize) -> Option<String> {
         [low.min(wider.position[0]), high.max(wider.position[1])]
     });
     let (row, q) = farthest(&motion.q[joint])?;
-    (q < low - OUTSIDE || q > high + OUTSIDE).then(|| {
+    (q < low - RANGE_TOLERANCE || q > high + RANGE_TOLERANCE).then(|| {
         format!(
             "q{n} is {} rad in row {}, outside {low:.3} to {high:.3} rad; name the column q{n}_deg \
              if it is in degrees",
@@ -43,7 +43,7 @@ fn position(model: &Model, motion: &Motion, joint: usize) -> Option<String> {
 fn speed(model: &Model, motion: &Motion, joint: usize) -> Option<String> {
     let most = *model.limits.velocity.as_ref()?.get(joint)?;
     let (row, qd) = farthest(&motion.qd[joint])?;
-    (qd.abs() > FASTER * most).then(|| {
+    (qd.abs() > MAX_SPEED_RATIO * most).then(|| {
         format!(
             "joint {} turns at {} rad/s in row {}, the robot at most at {most:.3}; t is in \
              seconds, angles are in radians",
@@ -65,8 +65,8 @@ fn time(motion: &Motion) -> Option<String> {
     }
     intervals.sort_by(f64::total_cmp);
     let middle = *intervals.get(intervals.len() / 2)?;
-    let sparse = !motion.differentiated.is_empty() && middle > SPARSE;
-    (sparse || turned < LEAST * stated).then(|| {
+    let sparse = !motion.differentiated.is_empty() && middle > MAX_INTERVAL;
+    (sparse || turned < MIN_TURN_RATIO * stated).then(|| {
         format!(
             "rows are {middle} s apart; t is in seconds, divide it by 1000 if it is in milliseconds"
         )

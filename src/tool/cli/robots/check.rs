@@ -13,14 +13,15 @@ use crate::tool::cli::common::{Format, print};
 /// Number of poses at which forward and inverse kinematics are compared.
 const POSES: u32 = 64;
 /// Maximum difference of the poses \[m\] and \[rad\].
-const SAME: f64 = 1e-6;
+const POSE_TOLERANCE: f64 = 1e-6;
 
 /// The findings on one robot.
 struct Finding {
     name: String,
     joints: usize,
     problems: Vec<String>,
-    lacks: Vec<(Use, Vec<Lack>)>,
+    /// What each command would lack.
+    lacks: Vec<(Use, Vec<String>)>,
 }
 
 /// Checks the named robots, or the whole catalogue.
@@ -50,17 +51,18 @@ pub(super) fn run(robots: &[String], format: Format) -> anyhow::Result<ExitCode>
 /// The findings on a robot, from its file and from the estimate.
 fn checked(model: &Model, estimated: &Model) -> Finding {
     let mut problems = implausible(model);
-    let missed = (1..=POSES).filter(|n| !leads_back(model, *n)).count();
+    let missed = (1..=POSES).filter(|n| !inverse_matches(model, *n)).count();
     if missed > 0 {
         problems.push(format!("kinematics: {missed} of {POSES} poses do not lead back"));
     }
-    let lacks = Use::ALL.map(|of| (of, lacking(estimated, of))).to_vec();
+    let words = |of: Use| lacking(estimated, of).iter().map(Lack::to_string).collect();
+    let lacks = Use::ALL.map(|of| (of, words(of))).to_vec();
     Finding { name: model.name.clone(), joints: model.dof, problems, lacks }
 }
 
 /// Whether the inverse of the `n`-th pose leads back to it. Without six joints, only a finite pose
 /// is required.
-fn leads_back(model: &Model, n: u32) -> bool {
+fn inverse_matches(model: &Model, n: u32) -> bool {
     const BASES: [u32; 7] = [2, 3, 5, 7, 11, 13, 17];
     let q: Vec<f64> = model
         .limits
@@ -79,7 +81,7 @@ fn leads_back(model: &Model, n: u32) -> bool {
     }
     ik_near(model, &pose, &q).is_ok_and(|found| {
         let miss = fk(model, &found).inverse() * pose;
-        miss.translation.vector.norm() < SAME && miss.rotation.angle() < SAME
+        miss.translation.vector.norm() < POSE_TOLERANCE && miss.rotation.angle() < POSE_TOLERANCE
     })
 }
 
@@ -90,20 +92,16 @@ fn text(finding: &Finding) -> String {
         let _ = writeln!(text, "  {problem}");
     }
     for (command, missing) in finding.lacks.iter().filter(|(_, missing)| !missing.is_empty()) {
-        let _ = writeln!(text, "  {command} lacks {}", words(missing).join(", "));
+        let _ = writeln!(text, "  {command} lacks {}", missing.join(", "));
     }
     text
-}
-
-fn words(lacks: &[Lack]) -> Vec<String> {
-    lacks.iter().map(ToString::to_string).collect()
 }
 
 fn document(finding: &Finding) -> Value {
     let lacks: Map<String, Value> = finding
         .lacks
         .iter()
-        .map(|(command, missing)| (command.to_string(), json!(words(missing))))
+        .map(|(command, missing)| (command.to_string(), json!(missing)))
         .collect();
     json!({
         "name": finding.name,

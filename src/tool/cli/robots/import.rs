@@ -3,6 +3,7 @@
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 use anyhow::{Context, bail};
 use clap::Args;
@@ -27,7 +28,7 @@ pub(super) struct ImportArgs {
     out: Option<PathBuf>,
 }
 
-pub(super) fn run(args: &ImportArgs) -> anyhow::Result<()> {
+pub(super) fn run(args: &ImportArgs) -> anyhow::Result<ExitCode> {
     let path = configuration(&args.source)?;
     let shown = path.display().to_string();
     let bytes =
@@ -42,9 +43,10 @@ pub(super) fn run(args: &ImportArgs) -> anyhow::Result<()> {
     // Checks that the output can be loaded.
     from_toml(&shown, &imported)?;
     match &args.out {
-        Some(out) => output::write(out, imported.as_bytes()),
-        None => Ok(std::io::stdout().lock().write_all(imported.as_bytes())?),
+        Some(out) => output::write(out, imported.as_bytes())?,
+        None => std::io::stdout().lock().write_all(imported.as_bytes())?,
     }
+    Ok(ExitCode::SUCCESS)
 }
 
 /// The file itself, or the motion configuration of a backup.

@@ -17,7 +17,7 @@ use crate::arm::robot;
 #[command(after_help = "Examples:\n  joulepath robots show IRB1600-10/1.45\n  \
                         joulepath robots check arm.urdf\n  \
                         joulepath robots import backup --out cell.toml")]
-pub struct RobotsArgs {
+pub(super) struct RobotsArgs {
     #[command(subcommand)]
     command: RobotsCommand,
 
@@ -44,21 +44,16 @@ enum RobotsCommand {
     Import(import::ImportArgs),
 }
 
-/// Runs the command.
-///
-/// # Errors
-/// An unknown robot or an invalid file.
-pub fn run(args: &RobotsArgs) -> anyhow::Result<ExitCode> {
+pub(super) fn run(args: &RobotsArgs) -> anyhow::Result<ExitCode> {
     match &args.command {
-        RobotsCommand::List => list(args.format)?,
-        RobotsCommand::Show { robot } => show::run(robot, args.format)?,
-        RobotsCommand::Import(args) => import::run(args)?,
-        RobotsCommand::Check { robots } => return check::run(robots, args.format),
+        RobotsCommand::List => list(args.format),
+        RobotsCommand::Show { robot } => show::run(robot, args.format),
+        RobotsCommand::Import(args) => import::run(args),
+        RobotsCommand::Check { robots } => check::run(robots, args.format),
     }
-    Ok(ExitCode::SUCCESS)
 }
 
-fn list(format: Format) -> anyhow::Result<()> {
+fn list(format: Format) -> anyhow::Result<ExitCode> {
     let json = || json!({ "robots": robot::names().collect::<Vec<_>>() });
     print(format, json, || robot::names().flat_map(|name| [name, "\n"]).collect())
 }

@@ -1,6 +1,7 @@
 //! `joulepath robots show`: the data of a robot.
 
 use std::fmt::Write as _;
+use std::process::ExitCode;
 
 use serde_json::{Value, json};
 
@@ -10,7 +11,7 @@ use crate::arm::robot::{Model, Provenance};
 use crate::retime::energy::plausible::{DRAWS, Interval};
 use crate::tool::cli::common::{Format, print};
 
-pub(super) fn run(robot: &str, format: Format) -> anyhow::Result<()> {
+pub(super) fn run(robot: &str, format: Format) -> anyhow::Result<ExitCode> {
     let model = effects::load_estimated(robot)?;
     print(format, || document(&model), || text(&model))
 }
@@ -102,9 +103,9 @@ struct Figure {
 }
 
 /// Label, table and key, value of a joint.
-type OfJoint = (&'static str, [&'static str; 2], fn(&Plausible, usize) -> f64);
+type JointFigure = (&'static str, [&'static str; 2], fn(&Plausible, usize) -> f64);
 /// The same for the whole robot.
-type OfRobot = (&'static str, [&'static str; 2], fn(&Plausible) -> f64);
+type RobotFigure = (&'static str, [&'static str; 2], fn(&Plausible) -> f64);
 
 /// All quantities in which plausible robots differ; empty without dynamics.
 fn figures(model: &Model) -> Vec<Figure> {
@@ -129,23 +130,23 @@ fn figures(model: &Model) -> Vec<Figure> {
         let link = format!("link {}", j + 1);
         all.push(figure(format!("{link}: mass, kg"), &link, "mass", &|robot| robot.links[j].mass));
     }
-    let of_joints: [OfJoint; 4] = [
+    let joint_figures: [JointFigure; 4] = [
         ("Coulomb friction, Nm", ["friction", "coulomb"], |robot, j| robot.coulomb[j]),
         ("viscous friction, Nm s/rad", ["friction", "viscous"], |robot, j| robot.viscous[j]),
         ("rotor at the joint, kg m2", ["motors", "rotor_inertia"], |robot, j| robot.rotors[j]),
         ("copper loss, W/(Nm)2", ["motors", "loss_constant"], |robot, j| robot.loss[j]),
     ];
-    for (what, [table, key], of) in of_joints {
+    for (what, [table, key], of) in joint_figures {
         for j in 0..model.dof {
             all.push(figure(format!("{}: {what}", j + 1), table, key, &|robot| of(robot, j)));
         }
     }
-    let of_robot: [OfRobot; 3] = [
+    let robot_figures: [RobotFigure; 3] = [
         ("base power, W", ["drive", "base_w"], |robot| robot.base_w),
         ("coils of open brakes, W", ["brakes", "power_released_w"], |robot| robot.coils_w),
         ("release of the brakes, J", ["brakes", "energy_per_release_j"], |robot| robot.release_j),
     ];
-    for (what, [table, key], of) in of_robot {
+    for (what, [table, key], of) in robot_figures {
         all.push(figure(what.to_owned(), table, key, &of));
     }
     all

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 
 use super::common::Job;
+use super::output::is_same_file;
 use super::{output, undo};
 use crate::rapid::text::{FileId, SourceFile};
 use crate::tool::retrofit::{OutputFile, OutputKind, Retrofit};
@@ -42,9 +43,7 @@ fn rest_of_backup(
 ) -> anyhow::Result<Vec<(PathBuf, Vec<u8>)>> {
     let known: BTreeSet<PathBuf> =
         result.outputs.iter().map(|file| PathBuf::from(&file.path)).collect();
-    let real = |path: &Path| path.canonicalize().ok();
-    let streams: Vec<_> = job.streams.modules.iter().map(|path| real(path)).collect();
-    let is_stream = |path: &Path| streams.contains(&real(path));
+    let is_stream = |path: &Path| job.streams.modules.iter().any(|one| is_same_file(one, path));
     let mut rest = Vec::new();
     let mut folders = vec![root.to_owned()];
     while let Some(folder) = folders.pop() {
@@ -67,7 +66,7 @@ fn rest_of_backup(
 }
 
 /// Refuses an output folder inside an input folder.
-pub(super) fn outside(folder: &Path, paths: &[PathBuf]) -> anyhow::Result<()> {
+pub(super) fn refuse_nested_output(folder: &Path, paths: &[PathBuf]) -> anyhow::Result<()> {
     let wanted = std::path::absolute(folder)?;
     let mut ancestors = wanted.ancestors();
     let real = ancestors.find_map(|path| path.canonicalize().ok());
@@ -97,13 +96,9 @@ pub(super) fn write_folder(
     result: &Retrofit,
     backup: Option<&Path>,
 ) -> anyhow::Result<Vec<String>> {
-    let real = |path: &Path| path.canonicalize().ok();
     for file in &result.outputs {
         let path = folder.join(&file.path);
-        let target = real(&path);
-        if target.is_some()
-            && job.files.iter().any(|source| real(Path::new(&source.file.path)) == target)
-        {
+        if job.files.iter().any(|source| is_same_file(&path, Path::new(&source.file.path))) {
             bail!(
                 "'{}' is a file of the program itself; name another folder, or give --in-place, \
                  which keeps the originals",
@@ -111,18 +106,17 @@ pub(super) fn write_folder(
             );
         }
     }
-    let stored: Vec<(PathBuf, Cow<'_, [u8]>)> =
-        new_first(result).map(|file| (PathBuf::from(&file.path), stored(job, file))).collect();
     let rest = match backup {
         Some(root) => {
             let out = std::path::absolute(folder)?;
-            rest_of_backup(root, &real(&out).unwrap_or(out), (job, result))?
+            rest_of_backup(root, &out.canonicalize().unwrap_or(out), (job, result))?
         }
         None => Vec::new(),
     };
-    let files = stored.iter().map(|(path, bytes)| (path.clone(), bytes.as_ref()));
-    let unchanged = rest.iter().map(|(path, bytes)| (path.clone(), bytes.as_slice()));
-    output::write_folder(folder, &files.chain(unchanged).collect::<Vec<_>>())?;
+    let files =
+        new_first(result).map(|file| (Path::new(&file.path), encoded(job, file, &file.bytes)));
+    let unchanged = rest.iter().map(|(path, bytes)| (path.as_path(), Cow::from(bytes)));
+    output::write_folder(folder, files.chain(unchanged))?;
     let written = result.outputs.iter().map(|file| folder.join(&file.path));
     let written = written.chain(rest.iter().map(|(path, _)| folder.join(path)));
     Ok(written.map(|path| path.display().to_string()).collect())
@@ -143,8 +137,8 @@ pub(super) fn write_in_place(
 ) -> anyhow::Result<Vec<String>> {
     let mut changes = Vec::new();
     for file in new_first(result) {
-        let (path, after) = (place(job, file), stored(job, file));
-        let before = match original(job, file) {
+        let (path, after) = (path_in_tree(job, file), encoded(job, file, &file.bytes));
+        let before = match input_file(job, file) {
             Some((path, bytes)) => {
                 // An unreadable file could not be restored.
                 let now = std::fs::read(path).with_context(|| format!("cannot read '{path}'"))?;
@@ -178,11 +172,7 @@ pub(super) fn write_in_place(
     Ok(paths.map(|path| path.display().to_string()).collect())
 }
 
-/// The bytes of an output in the encoding of its original file.
-fn stored<'a>(job: &Job, file: &'a OutputFile) -> Cow<'a, [u8]> {
-    encoded(job, file, &file.bytes)
-}
-
+/// Bytes of an output in the encoding of its original file.
 fn encoded<'a>(job: &Job, file: &OutputFile, bytes: &'a [u8]) -> Cow<'a, [u8]> {
     match file.input.and_then(|i| job.files.get(i)) {
         Some(source) => source.file.stored(bytes),
@@ -191,17 +181,17 @@ fn encoded<'a>(job: &Job, file: &OutputFile, bytes: &'a [u8]) -> Cow<'a, [u8]> {
 }
 
 /// The current content of the user's file for an output, decoded in the same way.
-pub(super) fn now(job: &Job, file: &OutputFile) -> Option<Vec<u8>> {
+pub(super) fn current_bytes(job: &Job, file: &OutputFile) -> Option<Vec<u8>> {
     if !job.is_refreshed() {
-        return original(job, file).map(|(_, bytes)| bytes.to_vec());
+        return input_file(job, file).map(|(_, bytes)| bytes.to_vec());
     }
-    let path = place(job, file);
+    let path = path_in_tree(job, file);
     let bytes = std::fs::read(&path).ok()?;
     Some(SourceFile::new(FileId(0), path.display().to_string(), bytes).bytes)
 }
 
 /// Path and bytes of the input file of an output.
-fn original<'a>(job: &'a Job, file: &OutputFile) -> Option<(&'a str, &'a [u8])> {
+fn input_file<'a>(job: &'a Job, file: &OutputFile) -> Option<(&'a str, &'a [u8])> {
     match (file.kind, file.input) {
         (OutputKind::New, _) => None,
         (_, Some(i)) => job.files.get(i).map(|s| (s.file.path.as_str(), s.file.bytes.as_slice())),
@@ -215,8 +205,8 @@ fn original<'a>(job: &'a Job, file: &OutputFile) -> Option<(&'a str, &'a [u8])> 
 }
 
 /// The path of an output in the user's own tree.
-fn place(job: &Job, file: &OutputFile) -> PathBuf {
-    if let Some((path, _)) = original(job, file) {
+fn path_in_tree(job: &Job, file: &OutputFile) -> PathBuf {
+    if let Some((path, _)) = input_file(job, file) {
         return PathBuf::from(path);
     }
     let folder = |path: &str| Path::new(path).parent().map_or_else(PathBuf::new, Path::to_path_buf);
