@@ -1,6 +1,7 @@
 use super::function::Source;
 use super::functions::FUNCTIONS;
 use super::index::INSTRUCTIONS;
+use super::parameter::positional;
 use super::types::TYPES;
 use super::*;
 
@@ -53,7 +54,7 @@ fn what_moves_has_a_target_and_a_speed() {
     for entry in INSTRUCTIONS.into_iter().flatten().filter(|entry| entry.is_movement()) {
         let signature = entry.movement();
         let Some(signature) = signature else { unreachable!("{} has no target", entry.name) };
-        let has_tool = entry.parameters().any(|parameter| parameter.name == "Tool");
+        let has_tool = positional(entry.arguments).any(|parameter| parameter.name == "Tool");
         assert_eq!(has_tool, signature.form != MoveForm::ExternalJoint, "{}", entry.name);
         assert!(entry.is_known() && entry.effect == Effect::Nothing, "{}", entry.name);
     }
@@ -99,7 +100,7 @@ fn signals_have_a_kind() {
 #[test]
 fn components_have_types_of_the_table() {
     for ty in TYPES {
-        for (_, component) in ty.components {
+        for (_, component) in ty.components() {
             assert!(data_type(component).is_some(), "{component}");
         }
     }

@@ -268,6 +268,11 @@ pub enum StmtKind {
 }
 
 impl Routine {
+    /// The statements of the body and of every handler, with those of inner blocks.
+    pub fn statements(&self) -> impl Iterator<Item = &Stmt> {
+        self.blocks().flat_map(|block| statements(block))
+    }
+
     /// The body and every handler.
     pub fn blocks(&self) -> impl Iterator<Item = &Block> {
         std::iter::once(&self.body)
@@ -275,6 +280,16 @@ impl Routine {
             .chain(self.error.iter().map(|(_, block)| block))
             .chain(&self.undo)
     }
+}
+
+/// The statements of a block and of its inner blocks, in the order of the text.
+pub fn statements(block: &[Stmt]) -> impl Iterator<Item = &Stmt> {
+    let mut open: Vec<&Stmt> = block.iter().rev().collect();
+    std::iter::from_fn(move || {
+        let stmt = open.pop()?;
+        open.extend(stmt.kind.blocks().into_iter().rev().flat_map(|inner| inner.iter().rev()));
+        Some(stmt)
+    })
 }
 
 impl StmtKind {
@@ -319,6 +334,14 @@ impl StmtKind {
 }
 
 impl Arg {
+    /// Its value, if it has no name.
+    pub fn positional(&self) -> Option<&Expr> {
+        match &self.kind {
+            ArgKind::Positional(expr) => Some(expr),
+            _ => None,
+        }
+    }
+
     /// Its value; none for a switch.
     pub fn value(&self) -> Option<&Expr> {
         match &self.kind {
@@ -340,6 +363,15 @@ impl Expr {
             ExprKind::Call(_, args) => args.iter().filter_map(Arg::value).collect(),
             ExprKind::Aggregate(items) => items.iter().collect(),
             ExprKind::Binary(_, left, right) => vec![left, right],
+            _ => Vec::new(),
+        }
+    }
+
+    /// The operands of an operator, or the positional arguments of a call.
+    pub fn operands(&self) -> Vec<&Expr> {
+        match &self.kind {
+            ExprKind::Call(_, args) => args.iter().filter_map(Arg::positional).collect(),
+            ExprKind::Unary(..) | ExprKind::Binary(..) => self.parts(),
             _ => Vec::new(),
         }
     }

@@ -158,7 +158,7 @@ impl Executor<'_> {
         Ok(Movement {
             instruction: text.into(),
             form: signature.form,
-            plain: signature.plain,
+            plain: signature.kind == MoveKind::Plain,
             span: stmt.span,
             routine: self.frame().routine.clone(),
             called_at: self.frame().called_at,
