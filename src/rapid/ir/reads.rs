@@ -3,10 +3,9 @@
 
 use std::collections::BTreeSet;
 
-use super::hir::{
-    Arg, BinaryOp, Call, Callee, Expr, ExprKind, ParamMode, Routine, Stmt, StmtKind, statements,
-};
+use super::hir::{Arg, BinaryOp, Call, Callee, Expr, ExprKind, ParamMode, Routine, Stmt, StmtKind};
 use super::program::{DataId, Program, RoutineId, Symbol};
+use super::walk::statements;
 use crate::rapid::builtins::{self, Instruction, Source};
 
 /// What an expression depends on.
@@ -28,12 +27,13 @@ pub struct Reads {
 
 /// What the evaluation of `expr` in the scope of a routine reads.
 pub fn reads(program: &Program, routine: RoutineId, expr: &Expr) -> Reads {
-    let mut walk = Walk { program, seen: BTreeSet::new(), found: Reads::default(), changes: false };
-    walk.expr(routine, expr);
-    Reads { fixed: !walk.changes, ..walk.found }
+    let mut analysis =
+        Analysis { program, seen: BTreeSet::new(), found: Reads::default(), changes: false };
+    analysis.expr(routine, expr);
+    Reads { fixed: !analysis.changes, ..analysis.found }
 }
 
-struct Walk<'p> {
+struct Analysis<'p> {
     program: &'p Program,
     /// Functions that were already analysed.
     seen: BTreeSet<RoutineId>,
@@ -42,7 +42,7 @@ struct Walk<'p> {
     changes: bool,
 }
 
-impl Walk<'_> {
+impl Analysis<'_> {
     fn expr(&mut self, at: RoutineId, expr: &Expr) {
         let is_number = |expr: &Expr| matches!(expr.kind, ExprKind::Num(_));
         match &expr.kind {
@@ -54,17 +54,17 @@ impl Walk<'_> {
                 self.found.may_raise |= !is_number(right);
             }
             ExprKind::AnyPosition | ExprKind::Placeholder | ExprKind::Broken => {
-                self.effect("holds something that only the controller knows");
+                self.side_effect("holds something that only the controller knows");
             }
             _ => {}
         }
-        self.all(at, expr.parts());
+        self.exprs(at, expr.parts());
         if let ExprKind::Call(name, _) = &expr.kind {
             self.function(at, &name.key, &name.text);
         }
     }
 
-    fn all<'e>(&mut self, at: RoutineId, exprs: impl IntoIterator<Item = &'e Expr>) {
+    fn exprs<'e>(&mut self, at: RoutineId, exprs: impl IntoIterator<Item = &'e Expr>) {
         for expr in exprs {
             self.expr(at, expr);
         }
@@ -87,7 +87,7 @@ impl Walk<'_> {
                 self.found.data.insert(id);
             }
             Some(Symbol::Routine(_) | Symbol::Ambiguous) => {
-                self.effect(&format!("names {text}, which is no data"));
+                self.side_effect(&format!("names {text}, which is no data"));
             }
             None if builtins::predefined(key).is_some() => {}
             None => {
@@ -105,14 +105,14 @@ impl Walk<'_> {
                     self.routine(id);
                 }
             }
-            Some(_) => self.effect(&format!("calls {text}, which is no function")),
+            Some(_) => self.side_effect(&format!("calls {text}, which is no function")),
             None => match builtins::function(key).map(|function| function.source) {
                 Some(Source::Arguments) => {}
                 Some(Source::Signal | Source::Call) => self.changes = true,
                 Some(Source::Position | Source::Kinematics | Source::Mounting) => {
-                    self.effect("is computed from where the robot stands");
+                    self.side_effect("is computed from where the robot stands");
                 }
-                _ => self.effect(&format!("calls {text}, whose value no condition can tell")),
+                _ => self.side_effect(&format!("calls {text}, whose value no condition can tell")),
             },
         }
     }
@@ -120,9 +120,9 @@ impl Walk<'_> {
     fn routine(&mut self, id: RoutineId) {
         let routine = self.program.routine(id);
         if !routine.error.is_empty() || routine.undo.is_some() {
-            self.effect(&format!("calls {}, which has a handler", routine.name.text));
+            self.side_effect(&format!("calls {}, which has a handler", routine.name.text));
         }
-        self.all(id, routine.data.iter().filter_map(|data| data.init.as_ref()));
+        self.exprs(id, routine.data.iter().filter_map(|data| data.init.as_ref()));
         for stmt in statements(&routine.body) {
             self.statement(id, stmt);
         }
@@ -143,9 +143,9 @@ impl Walk<'_> {
             | StmtKind::Placeholder
             | StmtKind::Broken => {
                 let name = &self.program.routine(at).name.text;
-                self.effect(&format!("calls {name}, which may not come back with a value"));
+                self.side_effect(&format!("calls {name}, which may not come back with a value"));
             }
-            kind => self.all(at, kind.exprs()),
+            kind => self.exprs(at, kind.exprs()),
         }
     }
 
@@ -157,16 +157,18 @@ impl Walk<'_> {
                 if builtins::instruction(&name.key).is_some_and(Instruction::counts)
                     && self.program.resolve(at.module, &name.key).is_none() =>
             {
-                self.all(at, call.args.iter().filter_map(Arg::value));
+                self.exprs(at, call.args.iter().filter_map(Arg::value));
                 if let Some(target) = call.args.first().and_then(Arg::positional) {
                     self.target(at, target);
                 }
             }
             Callee::Name(name) => {
-                self.effect(&format!("calls {own}, which runs {}", name.text));
+                self.side_effect(&format!("calls {own}, which runs {}", name.text));
             }
             Callee::Late(_) => {
-                self.effect(&format!("calls {own}, which runs a procedure with a computed name"));
+                self.side_effect(&format!(
+                    "calls {own}, which runs a procedure with a computed name"
+                ));
             }
         }
     }
@@ -176,7 +178,7 @@ impl Walk<'_> {
         match &target.kind {
             ExprKind::Field(base, _) => self.target(at, base),
             ExprKind::Index(base, indices) => {
-                self.all(at, indices);
+                self.exprs(at, indices);
                 self.target(at, base);
             }
             ExprKind::Ref(name) => {
@@ -188,14 +190,14 @@ impl Walk<'_> {
                 );
                 if !is_own {
                     let function = &routine.name.text;
-                    self.effect(&format!("calls {function}, which writes to {}", name.text));
+                    self.side_effect(&format!("calls {function}, which writes to {}", name.text));
                 }
             }
-            _ => self.effect("writes to something that is no data"),
+            _ => self.side_effect("writes to something that is no data"),
         }
     }
 
-    fn effect(&mut self, what: &str) {
+    fn side_effect(&mut self, what: &str) {
         self.changes = true;
         self.found.effect.get_or_insert_with(|| what.to_owned());
     }

@@ -20,19 +20,20 @@ pub struct Signal {
 
 /// The signals of a program by lower-case name.
 pub fn signals(program: &Program) -> BTreeMap<String, Signal> {
-    let mut found = Found { program, module: 0, own: Vec::new(), signals: BTreeMap::new() };
+    let mut collector =
+        SignalCollector { program, module: 0, own: Vec::new(), signals: BTreeMap::new() };
     for (id, routine) in program.routines() {
-        found.module = id.module;
-        found.own = routine.params.iter().map(|param| param.name.key.clone()).collect();
-        found.own.extend(routine.data.iter().map(|data| data.name.key.clone()));
+        collector.module = id.module;
+        collector.own = routine.params.iter().map(|param| param.name.key.clone()).collect();
+        collector.own.extend(routine.data.iter().map(|data| data.name.key.clone()));
         for stmt in routine.statements() {
-            found.statement(stmt);
+            collector.statement(stmt);
         }
     }
-    for signal in found.signals.values_mut() {
+    for signal in collector.signals.values_mut() {
         signal.kind = signal.kind.or_else(|| by_name(&signal.name));
     }
-    found.signals
+    collector.signals
 }
 
 /// The kind by the usual prefix: `diPart`, `do_1`, but not a word such as `distance`.
@@ -55,7 +56,7 @@ fn by_use(key: &str) -> Option<SignalKind> {
     instruction.or_else(|| builtins::function(key).and_then(Function::signal))
 }
 
-struct Found<'a> {
+struct SignalCollector<'a> {
     program: &'a Program,
     module: usize,
     /// Names that the routine declares.
@@ -63,7 +64,7 @@ struct Found<'a> {
     signals: BTreeMap<String, Signal>,
 }
 
-impl Found<'_> {
+impl SignalCollector<'_> {
     fn statement(&mut self, stmt: &Stmt) {
         match &stmt.kind {
             StmtKind::Call(call) => {
