@@ -93,9 +93,7 @@ fn too_deep_nesting_causes_one_error() {
         assert_eq!(parse.errors.len(), 1, "{start}: {:?}", parse.errors.get(..3));
         // The parser reads the following statements.
         let kept = parse.tree.nodes().any(|node| {
-            syntax::ast::Call::cast(node)
-                .and_then(syntax::ast::Call::name)
-                .is_some_and(|name| name.text(&program(statements)) == b"Keep")
+            node.callee().is_some_and(|name| name.text(&program(statements)) == b"Keep")
         });
         assert!(kept, "{start}");
     }

@@ -5,7 +5,7 @@
 mod support;
 
 use joulepath::rapid::diagnostics::{Diagnostic, Label, Paint, full};
-use joulepath::rapid::syntax::{self, Node, NodeKind, Parse, ast};
+use joulepath::rapid::syntax::{self, Node, NodeKind, Parse};
 use joulepath::rapid::text::{FileId, SourceFile, Span};
 use support::{check_tree, fixture_folder, fixtures};
 
@@ -92,8 +92,7 @@ fn recovery_keeps_the_statements_around_a_mistake() {
         let text = String::from_utf8_lossy(bytes);
         let wanted = text.lines().filter(|line| line.trim_start().starts_with("Keep")).count();
         let whole = |node: &Node<'_>| {
-            let name = ast::Call::cast(*node).and_then(ast::Call::name);
-            name.is_some_and(|name| name.text(bytes).starts_with(b"Keep"))
+            node.callee().is_some_and(|name| name.text(bytes).starts_with(b"Keep"))
                 && node.subtree().all(|inner| inner.kind() != NodeKind::Error)
         };
         let kept = fixture.parse.tree.nodes().filter(whole).count();

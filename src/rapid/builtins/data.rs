@@ -121,21 +121,15 @@ pub fn is_controller_specific(key: &str) -> bool {
 pub fn predefined(key: &str) -> Option<Predefined> {
     let of = |type_name, value| Some(Predefined { type_name, value });
     let num = |type_name, value| of(type_name, Literal::Num(value));
+    let list = |type_name, parts| of(type_name, Literal::List(parts));
     match key {
         "vmax" => Some(speed([VMAX, OTHER_SPEEDS[0], OTHER_SPEEDS[1], OTHER_SPEEDS[2]])),
-        "tool0" => {
-            of("tooldata", Literal::List(vec![Literal::Bool(true), identity_pose(), light_load()]))
+        "tool0" => list("tooldata", vec![Literal::Bool(true), identity_pose(), light_load()]),
+        "wobj0" => {
+            let mut parts = vec![Literal::Bool(false), Literal::Bool(true), Literal::Text("")];
+            parts.extend([identity_pose(), identity_pose()]);
+            list("wobjdata", parts)
         }
-        "wobj0" => of(
-            "wobjdata",
-            Literal::List(vec![
-                Literal::Bool(false),
-                Literal::Bool(true),
-                Literal::Text(""),
-                identity_pose(),
-                identity_pose(),
-            ]),
-        ),
         "load0" => of("loaddata", light_load()),
         "pi" => num("num", std::f64::consts::PI),
         "high" | "edge" => num("num", 1.0),
@@ -155,24 +149,19 @@ fn error_number(key: &str) -> Option<Predefined> {
 
 /// Data with a number in their name: `v100`, `vrot10`, `inpos50`, `stoptime0_5`.
 fn numbered(key: &str) -> Option<Predefined> {
-    if let Some(percent) = key.strip_prefix("inpos") {
-        return known(percent, &IN_POSITION).map(|percent| stop(1.0, percent, 0.0, 0.0));
-    }
-    let time = |text: &str| STOP_TIMES.iter().find(|(name, _)| *name == text).map(|(_, s)| *s);
-    if let Some(text) = key.strip_prefix("stoptime") {
-        return time(text).map(|seconds| stop(2.0, 0.0, seconds, 0.0));
-    }
-    if let Some(text) = key.strip_prefix("fllwtime") {
-        return time(text).map(|seconds| stop(3.0, 0.0, 0.0, seconds));
-    }
-    if let Some(turning) = key.strip_prefix("vrot") {
-        return known(turning, &TURNING).map(|v| speed([0.0, 0.0, 0.0, v]));
-    }
-    if let Some(linear) = key.strip_prefix("vlin") {
-        return known(linear, &LINEAR).map(|v| speed([0.0, 0.0, v, 0.0]));
-    }
     let [ori, leax, reax] = OTHER_SPEEDS;
-    known(key.strip_prefix('v')?, &SPEEDS).map(|v| speed([v, ori, leax, reax]))
+    let number = |prefix: &str, list: &[u32]| known(key.strip_prefix(prefix)?, list);
+    let time = |prefix: &str| {
+        let text = key.strip_prefix(prefix)?;
+        STOP_TIMES.iter().find(|(name, _)| *name == text).map(|(_, seconds)| *seconds)
+    };
+    number("inpos", &IN_POSITION)
+        .map(|percent| stop(1.0, percent, 0.0, 0.0))
+        .or_else(|| time("stoptime").map(|seconds| stop(2.0, 0.0, seconds, 0.0)))
+        .or_else(|| time("fllwtime").map(|seconds| stop(3.0, 0.0, 0.0, seconds)))
+        .or_else(|| number("vrot", &TURNING).map(|v| speed([0.0, 0.0, 0.0, v])))
+        .or_else(|| number("vlin", &LINEAR).map(|v| speed([0.0, 0.0, v, 0.0])))
+        .or_else(|| number("v", &SPEEDS).map(|v| speed([v, ori, leax, reax])))
 }
 
 /// The number in a name, if the list contains it.

@@ -1,8 +1,6 @@
 //! Properties of a built-in instruction.
 
 use super::parameter::positional;
-#[cfg(test)]
-use super::parameter::{Parameter, parameters};
 use super::types::SignalKind;
 
 /// The form of a movement instruction: which positional arguments it takes.
@@ -54,8 +52,6 @@ pub struct MoveSignature {
     pub between: usize,
     /// True if it has a zone argument; without one it ends as a stop point.
     pub zone: bool,
-    /// True for `Move…` without further effect, unlike `Trigg…`, `Search…`, `Move…DO`.
-    pub plain: bool,
 }
 
 /// The single argument that an instruction writes to.
@@ -187,7 +183,7 @@ pub enum Effect {
 pub struct Instruction {
     /// As RAPID writes it.
     pub name: &'static str,
-    arguments: &'static str,
+    pub(super) arguments: &'static str,
     motion: Option<(MoveForm, MoveKind)>,
     writes: Writes,
     /// Its effect on the simulation.
@@ -248,12 +244,6 @@ impl Instruction {
         Instruction { changes_motion: true, ..self }
     }
 
-    /// The parameters in order.
-    #[cfg(test)]
-    pub(super) fn parameters(&self) -> impl Iterator<Item = Parameter> {
-        parameters(self.arguments)
-    }
-
     /// The kind of the signal that is its first positional argument.
     pub fn signal(&self) -> Option<SignalKind> {
         positional(self.arguments).next()?.signal()
@@ -283,7 +273,6 @@ impl Instruction {
             before: place(&["CirPoint", "ToPoint", "ToJointPos"])?,
             between: end - speed - 1,
             zone: place(&["Zone"]).is_some(),
-            plain: kind == MoveKind::Plain,
         })
     }
 

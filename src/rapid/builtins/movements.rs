@@ -4,11 +4,7 @@ use super::instruction::MoveForm::{AbsJ, Circular, ExternalJoint, Joint, Linear}
 use super::instruction::MoveKind::{Event, Plain, Search};
 use super::instruction::{Instruction, MoveForm, MoveKind, plain};
 
-const fn movement(name: &'static str, form: MoveForm, arguments: &'static str) -> Instruction {
-    plain(name, arguments).moving(form, Plain)
-}
-
-const fn more(
+const fn movement(
     name: &'static str,
     form: MoveForm,
     kind: MoveKind,
@@ -51,13 +47,13 @@ const TRIGG_L_IOS: &str = "\\Conc ToPoint \\ID Speed \\T \\TriggData1 \\TriggDat
     \\Inpos Tool \\WObj \\Corr \\TLoad";
 
 pub(super) const INSTRUCTIONS: &[Instruction] = &[
-    movement("MoveAbsJ", AbsJ, MOVE_ABS_J),
-    movement("MoveC", Circular, MOVE_C),
-    more("MoveCAO", Circular, Event, TO_CIRCLE),
-    more("MoveCDO", Circular, Event, TO_CIRCLE),
-    more("MoveCGO", Circular, Event, GROUP_TO_CIRCLE),
-    more("MoveCSync", Circular, Event, SYNC_TO_CIRCLE),
-    more(
+    movement("MoveAbsJ", AbsJ, Plain, MOVE_ABS_J),
+    movement("MoveC", Circular, Plain, MOVE_C),
+    movement("MoveCAO", Circular, Event, TO_CIRCLE),
+    movement("MoveCDO", Circular, Event, TO_CIRCLE),
+    movement("MoveCGO", Circular, Event, GROUP_TO_CIRCLE),
+    movement("MoveCSync", Circular, Event, SYNC_TO_CIRCLE),
+    movement(
         "MoveExtJ",
         ExternalJoint,
         Event,
@@ -66,25 +62,26 @@ pub(super) const INSTRUCTIONS: &[Instruction] = &[
     movement(
         "MoveJ",
         Joint,
+        Plain,
         "\\Conc ToPoint \\ID Speed \\V \\T Zone \\Z \\Inpos Tool \\WObj \\TLoad",
     ),
-    more("MoveJAO", Joint, Event, TO_POINT),
-    more("MoveJDO", Joint, Event, TO_POINT),
-    more("MoveJGO", Joint, Event, GROUP_TO_POINT),
-    more("MoveJSync", Joint, Event, SYNC_TO_POINT),
-    movement("MoveL", Linear, MOVE_L),
-    more("MoveLAO", Linear, Event, TO_POINT),
-    more("MoveLDO", Linear, Event, TO_POINT),
-    more("MoveLGO", Linear, Event, GROUP_TO_POINT),
-    more("MoveLSync", Linear, Event, SYNC_TO_POINT),
-    more("MovePnP", Linear, Event, "ToPoint Speed Zone Tool \\WObj \\TLoad"),
-    more("SearchC", Circular, Search, SEARCH_C),
-    more("SearchExtJ", ExternalJoint, Search, SEARCH_EXT_J),
-    more("SearchL", Linear, Search, SEARCH_L),
-    more("TriggAbsJ", AbsJ, Event, TRIGG_ABS_J),
-    more("TriggC", Circular, Event, TRIGG_C),
-    more("TriggJ", Joint, Event, TRIGG_J),
-    more("TriggJIOs", Joint, Event, TRIGG_J_IOS),
-    more("TriggL", Linear, Event, TRIGG_L),
-    more("TriggLIOs", Linear, Event, TRIGG_L_IOS),
+    movement("MoveJAO", Joint, Event, TO_POINT),
+    movement("MoveJDO", Joint, Event, TO_POINT),
+    movement("MoveJGO", Joint, Event, GROUP_TO_POINT),
+    movement("MoveJSync", Joint, Event, SYNC_TO_POINT),
+    movement("MoveL", Linear, Plain, MOVE_L),
+    movement("MoveLAO", Linear, Event, TO_POINT),
+    movement("MoveLDO", Linear, Event, TO_POINT),
+    movement("MoveLGO", Linear, Event, GROUP_TO_POINT),
+    movement("MoveLSync", Linear, Event, SYNC_TO_POINT),
+    movement("MovePnP", Linear, Event, "ToPoint Speed Zone Tool \\WObj \\TLoad"),
+    movement("SearchC", Circular, Search, SEARCH_C),
+    movement("SearchExtJ", ExternalJoint, Search, SEARCH_EXT_J),
+    movement("SearchL", Linear, Search, SEARCH_L),
+    movement("TriggAbsJ", AbsJ, Event, TRIGG_ABS_J),
+    movement("TriggC", Circular, Event, TRIGG_C),
+    movement("TriggJ", Joint, Event, TRIGG_J),
+    movement("TriggJIOs", Joint, Event, TRIGG_J_IOS),
+    movement("TriggL", Linear, Event, TRIGG_L),
+    movement("TriggLIOs", Linear, Event, TRIGG_L_IOS),
 ];

@@ -1,6 +1,7 @@
 use super::function::Source;
 use super::functions::FUNCTIONS;
 use super::index::INSTRUCTIONS;
+use super::parameter::positional;
 use super::types::TYPES;
 use super::*;
 
@@ -29,7 +30,7 @@ fn each_table_is_sorted_and_no_name_is_there_twice() {
 
 /// The number of names with each property, so that no name gets lost.
 #[test]
-fn the_table_has_all_names_of_the_lists_before_it() {
+fn no_name_or_property_was_lost() {
     let count = |has: fn(&Instruction) -> bool| {
         INSTRUCTIONS.into_iter().flatten().filter(|entry| has(entry)).count()
     };
@@ -49,18 +50,18 @@ fn the_table_has_all_names_of_the_lists_before_it() {
 }
 
 #[test]
-fn what_moves_has_a_target_and_a_speed() {
+fn movements_have_a_target_and_a_speed() {
     for entry in INSTRUCTIONS.into_iter().flatten().filter(|entry| entry.is_movement()) {
         let signature = entry.movement();
         let Some(signature) = signature else { unreachable!("{} has no target", entry.name) };
-        let has_tool = entry.parameters().any(|parameter| parameter.name == "Tool");
+        let has_tool = positional(entry.arguments).any(|parameter| parameter.name == "Tool");
         assert_eq!(has_tool, signature.form != MoveForm::ExternalJoint, "{}", entry.name);
         assert!(entry.is_known() && entry.effect == Effect::Nothing, "{}", entry.name);
     }
 }
 
 #[test]
-fn movements_are_told_from_their_neighbours() {
+fn similar_names_are_not_movements() {
     for name in ["MoveJ", "MOVEABSJ", "triggL", "SearchExtJ", "MoveLDO"] {
         assert!(is_movement(name) && is_of_move_family(name), "{name}");
     }
@@ -75,7 +76,7 @@ fn movements_are_told_from_their_neighbours() {
 }
 
 #[test]
-fn what_ends_a_setting_names_one_that_is_not_simulated() {
+fn ended_settings_are_not_simulated() {
     for entry in INSTRUCTIONS.into_iter().flatten() {
         let Effect::Ends(names) = entry.effect else { continue };
         for name in names {
@@ -99,7 +100,7 @@ fn signals_have_a_kind() {
 #[test]
 fn components_have_types_of_the_table() {
     for ty in TYPES {
-        for (_, component) in ty.components {
+        for (_, component) in ty.components() {
             assert!(data_type(component).is_some(), "{component}");
         }
     }

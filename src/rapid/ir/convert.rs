@@ -165,15 +165,12 @@ pub(super) fn load(datum: &Datum) -> Converted<LoadData> {
     if mass > HEAVIEST {
         return Err(format!("the mass of the load is {mass:e} kg, more than any robot carries"));
     }
+    let inertia = |datum| num(datum, "inertia of the load");
     let axes = orient(axes, "axes of the load")?;
     Ok(LoadData {
         mass,
         com: nums::<3>(cog, "the centre of gravity")?.map(|x| x * MM),
-        inertia: [
-            num(ix, "inertia of the load")?,
-            num(iy, "inertia of the load")?,
-            num(iz, "inertia of the load")?,
-        ],
+        inertia: [inertia(ix)?, inertia(iy)?, inertia(iz)?],
         axes: [axes.w, axes.i, axes.j, axes.k],
     })
 }
@@ -203,13 +200,8 @@ pub(super) fn work_object(datum: &Datum) -> Converted<WorkObject> {
 pub(super) fn offs(target: &Datum, offset: [f64; 3]) -> Converted<Datum> {
     let [trans, rot, conf, external] = parts::<4>(target, "the robtarget")?;
     let [x, y, z] = nums::<3>(trans, "the robtarget")?;
-    let moved = [x + offset[0], y + offset[1], z + offset[2]];
-    Ok(Datum::List(vec![
-        Datum::List(moved.map(Datum::Num).to_vec()),
-        rot.clone(),
-        conf.clone(),
-        external.clone(),
-    ]))
+    let moved = Datum::nums([x + offset[0], y + offset[1], z + offset[2]]);
+    Ok(Datum::List(vec![moved, rot.clone(), conf.clone(), external.clone()]))
 }
 
 /// `RelTool`: displaced (mm) and then turned (degrees, about x, y, z in this order)
@@ -223,22 +215,21 @@ pub(super) fn rel_tool(target: &Datum, offset: [f64; 3], turn: [f64; 3]) -> Conv
         * UnitQuaternion::from_axis_angle(&Vector3::z_axis(), rz);
     let [dx, dy, dz] = offset;
     let moved = frame * Isometry3::from_parts(Translation3::new(dx * MM, dy * MM, dz * MM), turned);
-    let Datum::List(mut list) = pose_datum(&moved) else { return Err("not a pose".into()) };
-    list.push(conf.clone());
-    list.push(external.clone());
-    Ok(Datum::List(list))
+    let [trans, rot] = pose_parts(&moved);
+    Ok(Datum::List(vec![trans, rot, conf.clone(), external.clone()]))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn list(values: &[f64]) -> Datum {
-        Datum::List(values.iter().copied().map(Datum::Num).collect())
-    }
-
     fn target(trans: [f64; 3], rot: [f64; 4]) -> Datum {
-        Datum::List(vec![list(&trans), list(&rot), list(&[0.0; 4]), list(&[9e9; 6])])
+        Datum::List(vec![
+            Datum::nums(trans),
+            Datum::nums(rot),
+            Datum::nums([0.0; 4]),
+            Datum::nums([9e9; 6]),
+        ])
     }
 
     #[test]
@@ -255,7 +246,7 @@ mod tests {
     fn wrong_quaternions_and_lengths_are_named() {
         let bad = robtarget(&target([0.0; 3], [1.0, 1.0, 0.0, 0.0])).expect_err("norm");
         assert!(bad.contains("unit quaternion"), "{bad}");
-        let short = jointtarget(&Datum::List(vec![list(&[0.0; 5]), list(&[9e9; 6])]));
+        let short = jointtarget(&Datum::List(vec![Datum::nums([0.0; 5]), Datum::nums([9e9; 6])]));
         assert!(short.expect_err("short").contains("5 components instead of 6"));
     }
 }

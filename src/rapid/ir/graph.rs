@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn branches_meet_behind_their_end() {
+    fn branches_join_after_their_end() {
         let graph = shown("IF a THEN x; ELSEIF b THEN RETURN; ELSE y; ENDIF z;");
         let expected = "0 entry Always>2\n1 exit\n2 a True>3 False>4\n3 x Always>7\n\
                         4 b True>5 False>6\n5 RETURN Always>1\n6 y Always>7\n7 z Always>1";
@@ -251,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn endless_loops_are_left_by_jumps_alone() {
+    fn only_jumps_leave_endless_loops() {
         let graph = shown("WHILE TRUE DO IF a GOTO out; x; ENDWHILE y; out: z;");
         let expected = "0 entry Always>2\n1 exit\n2 TRUE True>3\n3 a True>4 False>5\n\
                         4 GOTO Always>7\n5 x Always>2\n6 y dead Always>7\n7 out Always>8\n\
@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn cases_jumps_and_errors_find_their_places() {
+    fn cases_jumps_and_errors_have_their_edges() {
         let graph =
             shown("again: TEST n CASE 1: x; CASE 2: RAISE; ENDTEST GOTO again; y; ERROR TRYNEXT;");
         let expected = "0 entry Always>2\n1 exit\n2 again Always>3\n\

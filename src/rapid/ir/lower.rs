@@ -13,7 +13,7 @@ use super::hir::{
     Block, Call, Callee, Data, DataKind, Expr, Ident, Module, Name, Param, ParamMode, Routine,
     RoutineKind, Scope, Stmt, StmtKind, TypeDef, TypeDefKind,
 };
-use crate::rapid::syntax::{Node, NodeKind, Parse, TokenKind, ast};
+use crate::rapid::syntax::{Node, NodeKind, Parse, Token, TokenKind};
 use crate::rapid::text::{self, Charset, FileId, Span};
 
 /// The modules of a file, in order. Declarations outside `MODULE` form a module without a name.
@@ -23,7 +23,7 @@ pub fn lower(file: FileId, parse: &Parse, bytes: &[u8]) -> Vec<Module> {
     let lowering = Lowering { file, bytes, charset, names: RefCell::default() };
     let root = parse.tree.root();
     let mut modules: Vec<Module> =
-        root.children().filter_map(ast::Module::cast).map(|node| lowering.module(node)).collect();
+        children_of_kind(root, NodeKind::Module).map(|node| lowering.module(node)).collect();
     let mut bare = lowering.empty_module(root);
     for child in root.children() {
         lowering.item(child, &mut bare);
@@ -62,9 +62,18 @@ impl<'a> Lowering<'a> {
         Ident::new(self.name(node.text(self.bytes)), self.span(node))
     }
 
-    /// The identifier, or an empty one if `around` does not contain it.
-    fn ident_in(&self, node: Option<Node<'_>>, around: Node<'_>) -> Ident {
-        node.map_or_else(
+    /// The name in a node, or an empty one if it is missing.
+    fn name_of(&self, node: Node<'_>) -> Ident {
+        self.ident_or_empty(node.child(NodeKind::Name), node)
+    }
+
+    fn type_name_of(&self, node: Node<'_>) -> Ident {
+        self.ident_or_empty(node.child(NodeKind::TypeName), node)
+    }
+
+    /// The identifier, or an empty one at the start of `around`.
+    fn ident_or_empty(&self, ident: Option<Node<'_>>, around: Node<'_>) -> Ident {
+        ident.map_or_else(
             || {
                 let start = self.span(around).start;
                 Ident::new(self.name(&[]), Span { file: self.file, start, end: start })
@@ -77,7 +86,7 @@ impl<'a> Lowering<'a> {
 
     fn empty_module(&self, node: Node<'_>) -> Module {
         Module {
-            name: self.ident_in(None, node),
+            name: self.ident_or_empty(None, node),
             attributes: Vec::new(),
             types: Vec::new(),
             data: Vec::new(),
@@ -86,12 +95,13 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    fn module(&self, module: ast::Module<'_>) -> Module {
-        let node = module.0;
+    fn module(&self, node: Node<'_>) -> Module {
         let mut lowered = self.empty_module(node);
-        lowered.name = self.ident_in(module.name(), node);
-        lowered.attributes = module
-            .attributes()
+        lowered.name = self.name_of(node);
+        let attributes = node.child(NodeKind::ModuleAttributes).into_iter();
+        lowered.attributes = attributes
+            .flat_map(Node::own_tokens)
+            .filter(|token| token.kind() == TokenKind::Identifier)
             .map(|token| String::from_utf8_lossy(token.text(self.bytes)).to_uppercase())
             .collect();
         for child in node.children() {
@@ -101,151 +111,145 @@ impl<'a> Lowering<'a> {
     }
 
     fn item(&self, node: Node<'_>, module: &mut Module) {
-        if let Some(data) = ast::Data::cast(node) {
-            module.data.push(self.data(data));
-        } else if let Some(routine) = ast::Routine::cast(node) {
-            module.routines.push(self.routine(routine));
-        } else if matches!(node.kind(), NodeKind::RecordDeclaration | NodeKind::AliasDeclaration) {
-            module.types.push(self.type_def(node));
+        match node.kind() {
+            NodeKind::DataDeclaration => module.data.push(self.data(node)),
+            NodeKind::RecordDeclaration => {
+                let components = children_of_kind(node, NodeKind::RecordComponent)
+                    .map(|part| (self.type_name_of(part), self.name_of(part)));
+                let kind = TypeDefKind::Record(components.collect());
+                module.types.push(TypeDef { name: self.name_of(node), kind });
+            }
+            NodeKind::AliasDeclaration => {
+                let kind = TypeDefKind::Alias(self.type_name_of(node));
+                module.types.push(TypeDef { name: self.name_of(node), kind });
+            }
+            kind if kind.is_routine() => module.routines.push(self.routine(node)),
+            _ => {}
         }
     }
 
-    fn type_def(&self, node: Node<'_>) -> TypeDef {
-        let kind = if node.kind() == NodeKind::AliasDeclaration {
-            TypeDefKind::Alias(self.ident_in(node.child(NodeKind::TypeName), node))
+    fn data(&self, node: Node<'_>) -> Data {
+        let kind = node.own_tokens().find_map(|token| match token.kind() {
+            TokenKind::Const => Some(DataKind::Const),
+            TokenKind::Pers => Some(DataKind::Pers),
+            TokenKind::Var => Some(DataKind::Var),
+            _ => None,
+        });
+        let dimensions = node.child(NodeKind::Dimensions).into_iter().flat_map(Node::children);
+        let init = if has_own_error(node) {
+            Some(self.broken(node))
         } else {
-            let component = |child: Node<'_>| {
-                (
-                    self.ident_in(child.child(NodeKind::TypeName), child),
-                    self.ident_in(child.child(NodeKind::Name), child),
-                )
-            };
-            TypeDefKind::Record(
-                node.children()
-                    .filter(|child| child.kind() == NodeKind::RecordComponent)
-                    .map(component)
-                    .collect(),
-            )
+            let value = node.children().filter(|child| child.kind().is_value()).last();
+            let assigned = node.own_token(TokenKind::Assign).and(value);
+            assigned.map(|value| self.expr(value))
         };
-        TypeDef { name: self.ident_in(node.child(NodeKind::Name), node), kind }
-    }
-
-    fn data(&self, data: ast::Data<'_>) -> Data {
-        let node = data.0;
-        let broken = node.children().any(|child| child.kind() == NodeKind::Error);
-        let init = data.value().map(|value| self.expr(value));
         Data {
-            scope: scope(data.scope()),
-            kind: match data.keyword() {
-                Some(TokenKind::Const) => DataKind::Const,
-                Some(TokenKind::Pers) => DataKind::Pers,
-                _ => DataKind::Var,
-            },
-            type_name: self.ident_in(data.type_name(), node),
-            name: self.ident_in(data.name(), node),
-            dims: data.dimensions().map(|dimension| self.expr(dimension)).collect(),
-            init: if broken { Some(self.broken(node)) } else { init },
+            scope: scope(node),
+            kind: kind.unwrap_or(DataKind::Var),
+            type_name: self.type_name_of(node),
+            name: self.name_of(node),
+            dims: dimensions.map(|dimension| self.expr(dimension)).collect(),
+            init,
             span: self.span(node),
         }
     }
 
-    fn routine(&self, routine: ast::Routine<'_>) -> Routine {
-        let node = routine.0;
+    fn routine(&self, node: Node<'_>) -> Routine {
         let kind = match node.kind() {
             NodeKind::FuncDeclaration => RoutineKind::Func,
             NodeKind::TrapDeclaration => RoutineKind::Trap,
             _ => RoutineKind::Proc,
         };
-        let params = routine
-            .parameter_groups()
-            .flat_map(|group| group.parameters().map(move |parameter| (group, parameter)))
-            .map(|(group, parameter)| self.param(group, parameter))
-            .collect();
-        let handler = |kind| routine.handlers(kind).next().map(|node| self.block_in(node));
+        let handler = |kind| node.child(kind).map(|handler| self.block_in(handler));
+        let errors = children_of_kind(node, NodeKind::ErrorHandler).map(|handler| {
+            let numbers = handler.child(NodeKind::ErrorNumbers);
+            let numbers = numbers.into_iter().flat_map(Node::children);
+            (numbers.map(|number| self.expr(number)).collect(), self.block_in(handler))
+        });
         Routine {
             kind,
-            scope: scope(routine.scope()),
-            name: self.ident_in(routine.name(), node),
-            params,
-            data: routine.data().map(|data| self.data(data)).collect(),
+            scope: scope(node),
+            name: self.name_of(node),
+            params: self.params(node),
+            data: children_of_kind(node, NodeKind::DataDeclaration)
+                .map(|data| self.data(data))
+                .collect(),
             body: self.block_in(node),
             backward: handler(NodeKind::BackwardHandler),
-            error: routine
-                .handlers(NodeKind::ErrorHandler)
-                .map(|node| {
-                    let numbers = node.child(NodeKind::ErrorNumbers);
-                    let numbers = numbers.into_iter().flat_map(Node::children);
-                    (numbers.map(|number| self.expr(number)).collect(), self.block_in(node))
-                })
-                .collect(),
+            error: errors.collect(),
             undo: handler(NodeKind::UndoHandler),
             span: self.span(node),
         }
     }
 
-    fn param(&self, group: ast::ParameterGroup<'_>, parameter: ast::Parameter<'_>) -> Param {
-        let node = parameter.0;
-        Param {
-            mode: match parameter.mode() {
-                Some(TokenKind::Var) => ParamMode::Var,
-                Some(TokenKind::Pers) => ParamMode::Pers,
-                Some(TokenKind::InOut) => ParamMode::InOut,
-                _ => ParamMode::In,
-            },
-            type_name: self.ident_in(parameter.type_name(), node),
-            name: self.ident_in(parameter.name(), node),
-            optional: group.is_optional(),
-        }
+    fn params(&self, routine: Node<'_>) -> Vec<Param> {
+        let groups = routine.child(NodeKind::Parameters).into_iter().flat_map(Node::children);
+        // Optional parameters that exclude each other form one group.
+        let parameters = groups.flat_map(|group| {
+            let optional = group.kind() == NodeKind::OptionalParameters;
+            let parameters = group.subtree().filter(|node| node.kind() == NodeKind::Parameter);
+            parameters.map(move |node| (node, optional))
+        });
+        parameters
+            .map(|(node, optional)| Param {
+                mode: match node.own_tokens().next().map(Token::kind) {
+                    Some(TokenKind::Var) => ParamMode::Var,
+                    Some(TokenKind::Pers) => ParamMode::Pers,
+                    Some(TokenKind::InOut) => ParamMode::InOut,
+                    _ => ParamMode::In,
+                },
+                type_name: self.type_name_of(node),
+                name: self.name_of(node),
+                optional,
+            })
+            .collect()
     }
 
     // --- statements ---
 
     /// The statements of the block in a node.
     fn block_in(&self, node: Node<'_>) -> Block {
-        node.child(NodeKind::Block)
-            .into_iter()
-            .flat_map(Node::children)
-            .filter_map(|child| self.stmt(child))
-            .collect()
+        let statements = node.child(NodeKind::Block).into_iter().flat_map(Node::children);
+        statements.map(|statement| self.stmt(statement)).collect()
     }
 
     /// A statement. The depth of the recursion is limited by the parser.
-    fn stmt(&self, node: Node<'_>) -> Option<Stmt> {
+    fn stmt(&self, node: Node<'_>) -> Stmt {
         let kind = match node.kind() {
-            NodeKind::IfStatement => self.if_statement(node),
+            NodeKind::IfStatement => Some(self.if_statement(node)),
             NodeKind::CompactIf => self.compact_if(node),
             NodeKind::ForStatement => self.for_statement(node),
             NodeKind::WhileStatement => {
-                StmtKind::While { condition: self.header_value(node), body: self.block_in(node) }
+                let (condition, body) = (self.header_value(node), self.block_in(node));
+                Some(StmtKind::While { condition, body })
             }
-            NodeKind::TestStatement => self.test_statement(node),
-            NodeKind::DataDeclaration => StmtKind::Data(self.data(ast::Data::cast(node)?)),
-            NodeKind::Placeholder | NodeKind::EmptyStatement => StmtKind::Placeholder,
-            _ if has_error(node) => StmtKind::Broken,
-            _ => self.simple_statement(node).unwrap_or(StmtKind::Broken),
+            NodeKind::TestStatement => Some(self.test_statement(node)),
+            NodeKind::DataDeclaration => Some(StmtKind::Data(self.data(node))),
+            NodeKind::Placeholder | NodeKind::EmptyStatement => Some(StmtKind::Placeholder),
+            _ if has_error(node) => None,
+            _ => self.simple_statement(node),
         };
-        Some(Stmt { kind, span: self.span(node) })
+        Stmt { kind: kind.unwrap_or(StmtKind::Broken), span: self.span(node) }
     }
 
     /// A statement without inner statements and without syntax errors.
     fn simple_statement(&self, node: Node<'_>) -> Option<StmtKind> {
-        let first = node.children().next();
+        let mut children = node.children();
+        let first = children.next();
         let name = || node.child(NodeKind::Name).map(|name| self.ident(name));
         Some(match node.kind() {
             NodeKind::Assignment => {
-                let mut sides = node.children();
-                StmtKind::Assign {
-                    target: self.expr(sides.next()?),
-                    value: self.expr(sides.next()?),
-                }
+                StmtKind::Assign { target: self.expr(first?), value: self.expr(children.next()?) }
             }
             NodeKind::CallStatement => {
-                let call = ast::Call::cast(node)?;
-                let callee = match call.late_binding() {
+                let callee = match node.child(NodeKind::LateBinding) {
                     Some(late) => Callee::Late(self.expr(late.children().next()?)),
-                    None => Callee::Name(self.ident(call.name()?)),
+                    None => Callee::Name(self.ident(node.callee()?)),
                 };
-                let args = exact(call.arguments(), call.arguments().count(), |arg| self.arg(arg));
+                let is_argument =
+                    |arg: &Node<'_>| arg.kind().is_value() || arg.kind().is_named_argument();
+                let args = || node.children().skip(1).filter(is_argument);
+                let args = exact(args(), args().count(), |arg| self.arg(arg));
                 StmtKind::Call(Call { callee, args })
             }
             NodeKind::GotoStatement => StmtKind::Goto(name()?),
@@ -263,64 +267,57 @@ impl<'a> Lowering<'a> {
     }
 
     fn if_statement(&self, node: Node<'_>) -> StmtKind {
-        let mut branches = vec![(self.header_value(node), self.block_in(node))];
-        let mut otherwise = None;
-        for child in node.children() {
-            match child.kind() {
-                NodeKind::ElseIfBranch => {
-                    branches.push((self.header_value(child), self.block_in(child)));
-                }
-                NodeKind::ElseBranch => otherwise = Some(self.block_in(child)),
-                _ => {}
-            }
-        }
-        StmtKind::If { branches, otherwise }
-    }
-
-    fn compact_if(&self, node: Node<'_>) -> StmtKind {
-        let parts = ast::If::cast(node).and_then(|view| view.condition().zip(view.statement()));
-        match parts {
-            Some((condition, statement)) if statement.kind() != NodeKind::Error => {
-                let body = self.stmt(statement).into_iter().collect();
-                StmtKind::If { branches: vec![(self.expr(condition), body)], otherwise: None }
-            }
-            _ => StmtKind::Broken,
+        let branches = std::iter::once(node)
+            .chain(children_of_kind(node, NodeKind::ElseIfBranch))
+            .map(|branch| (self.header_value(branch), self.block_in(branch)));
+        let otherwise = children_of_kind(node, NodeKind::ElseBranch).last();
+        StmtKind::If {
+            branches: branches.collect(),
+            otherwise: otherwise.map(|branch| self.block_in(branch)),
         }
     }
 
-    fn for_statement(&self, node: Node<'_>) -> StmtKind {
-        let broken = node.children().any(|child| child.kind() == NodeKind::Error);
-        let parts = ast::For::cast(node)
-            .filter(|_| !broken)
-            .and_then(|view| Some((view.variable()?, view.bounds()?, view.step())));
-        let Some((variable, (from, to), step)) = parts else { return StmtKind::Broken };
-        StmtKind::For {
-            var: self.ident(variable),
-            from: self.expr(from),
-            to: self.expr(to),
+    fn compact_if(&self, node: Node<'_>) -> Option<StmtKind> {
+        let condition = node.children().find(|child| child.kind().is_value())?;
+        let statement = node.children().nth(1)?;
+        (statement.kind() != NodeKind::Error).then(|| StmtKind::If {
+            branches: vec![(self.expr(condition), vec![self.stmt(statement)])],
+            otherwise: None,
+        })
+    }
+
+    fn for_statement(&self, node: Node<'_>) -> Option<StmtKind> {
+        if has_own_error(node) {
+            return None;
+        }
+        let mut bounds = node.children().filter(|child| child.kind().is_value());
+        let step = node.child(NodeKind::ForStep).and_then(|step| step.children().next());
+        Some(StmtKind::For {
+            var: self.ident(node.child(NodeKind::Name)?),
+            from: self.expr(bounds.next()?),
+            to: self.expr(bounds.next()?),
             step: step.map(|step| self.expr(step)),
             body: self.block_in(node),
-        }
+        })
     }
 
     fn test_statement(&self, node: Node<'_>) -> StmtKind {
-        let mut cases = Vec::new();
-        let mut default = None;
-        for child in node.children() {
-            if let Some(case) = ast::Case::cast(child) {
-                let values = case.values().map(|value| self.expr(value)).collect();
-                cases.push((values, self.block_in(child)));
-            } else if child.kind() == NodeKind::DefaultBranch {
-                default = Some(self.block_in(child));
-            }
+        let cases = children_of_kind(node, NodeKind::CaseBranch).map(|case| {
+            let values = case.children().filter(|child| child.kind().is_value());
+            (values.map(|value| self.expr(value)).collect(), self.block_in(case))
+        });
+        let default = children_of_kind(node, NodeKind::DefaultBranch).last();
+        StmtKind::Test {
+            value: self.header_value(node),
+            cases: cases.collect(),
+            default: default.map(|branch| self.block_in(branch)),
         }
-        StmtKind::Test { value: self.header_value(node), cases, default }
     }
 
     /// The value in the header of a block statement.
     fn header_value(&self, node: Node<'_>) -> Expr {
         let mut header = node.children().take_while(|child| child.kind() != NodeKind::Block);
-        let value = header.next().filter(|child| ast::is_value(*child));
+        let value = header.next().filter(|child| child.kind().is_value());
         match value {
             Some(value) if header.all(|child| child.kind() != NodeKind::Error) => self.expr(value),
             _ => self.broken(node),
@@ -328,12 +325,22 @@ impl<'a> Lowering<'a> {
     }
 }
 
-fn scope(keyword: Option<TokenKind>) -> Scope {
-    match keyword {
+/// `LOCAL`, `TASK` or neither before a declaration.
+fn scope(declaration: Node<'_>) -> Scope {
+    match declaration.own_tokens().next().map(Token::kind) {
         Some(TokenKind::Local) => Scope::Local,
         Some(TokenKind::Task) => Scope::Task,
         _ => Scope::Global,
     }
+}
+
+fn children_of_kind(node: Node<'_>, kind: NodeKind) -> impl Iterator<Item = Node<'_>> {
+    node.children().filter(move |child| child.kind() == kind)
+}
+
+/// Whether a part of the node itself, not of its children, is missing or wrong.
+fn has_own_error(node: Node<'_>) -> bool {
+    node.child(NodeKind::Error).is_some()
 }
 
 /// Lowers a list of known length. A growing vector needs up to twice the memory, which dominates

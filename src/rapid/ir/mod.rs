@@ -14,5 +14,6 @@ pub mod reads;
 pub mod signals;
 mod user;
 pub mod value;
+pub mod walk;
 
 pub use lower::lower;

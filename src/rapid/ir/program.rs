@@ -5,11 +5,11 @@ use std::collections::btree_map::Entry;
 use std::sync::Arc;
 
 use super::hir::{
-    ArgKind, Block, Call, Callee, Data, DataKind, Expr, ExprKind, Ident, Module, ParamMode,
-    Routine, RoutineKind, Scope, StmtKind, TypeDefKind,
+    ArgKind, Call, Callee, Data, DataKind, Expr, ExprKind, Ident, Module, ParamMode, Routine,
+    RoutineKind, Scope, Stmt, StmtKind, TypeDefKind,
 };
 use super::user;
-use crate::rapid::builtins::{self, Instruction};
+use crate::rapid::builtins::{self, DataType, Instruction};
 use crate::rapid::text::Span;
 
 /// A data object at module level.
@@ -122,6 +122,14 @@ impl Program {
         self.global.get(key).copied()
     }
 
+    /// The routines of all modules.
+    pub fn routines(&self) -> impl Iterator<Item = (RoutineId, &Routine)> {
+        self.modules.iter().enumerate().flat_map(|(module, body)| {
+            let routines = body.routines.iter().enumerate();
+            routines.map(move |(index, routine)| (RoutineId { module, index }, routine))
+        })
+    }
+
     /// The declaration.
     pub fn data(&self, id: DataId) -> &Data {
         &self.modules[id.module].data[id.index]
@@ -161,18 +169,16 @@ impl Program {
         let mut key = type_key.to_owned();
         // An alias chain is short; a circular one ends here.
         for _ in 0..16 {
-            if let Some(known) = builtins::data_type(&key)
-                && !known.components.is_empty()
-            {
-                let parts = known.components.iter();
-                return Some(parts.map(|(n, t)| ((*n).into(), (*t).into())).collect());
+            let known = builtins::data_type(&key).into_iter().flat_map(DataType::components);
+            let parts: Vec<_> = known.map(|(name, ty)| (name.to_owned(), ty.to_owned())).collect();
+            if !parts.is_empty() {
+                return Some(parts);
             }
             let def = self.modules.iter().flat_map(|m| &m.types).find(|t| t.name.key == key)?;
             match &def.kind {
                 TypeDefKind::Record(parts) => {
-                    return Some(
-                        parts.iter().map(|(ty, name)| (name.key.clone(), ty.key.clone())).collect(),
-                    );
+                    let parts = parts.iter().map(|(ty, name)| (name.key.clone(), ty.key.clone()));
+                    return Some(parts.collect());
                 }
                 TypeDefKind::Alias(target) => key.clone_from(&target.key),
             }
@@ -186,12 +192,10 @@ impl Program {
         // A written parameter makes the arguments of its callers written: repeat until stable.
         loop {
             found.changed = false;
-            for (module, body) in self.modules.iter().enumerate() {
-                for (index, routine) in body.routines.iter().enumerate() {
-                    let scope = RoutineScope { program: self, id: RoutineId { module, index } };
-                    for block in routine.blocks() {
-                        scope.find(block, &mut found);
-                    }
+            for (id, routine) in self.routines() {
+                let scope = RoutineScope { program: self, id };
+                for stmt in routine.statements() {
+                    scope.statement(stmt, &mut found);
                 }
             }
             if !found.changed {
@@ -232,44 +236,31 @@ struct RoutineScope<'a> {
 }
 
 impl RoutineScope<'_> {
-    fn find(&self, block: &Block, found: &mut Written) {
-        for stmt in block {
-            match &stmt.kind {
-                StmtKind::Assign { target, .. } => self.target(target, &Writer::Program, found),
-                StmtKind::Call(call) => self.call(call, found),
-                StmtKind::Connect { interrupt, .. } => {
-                    self.target(interrupt, &Writer::Program, found);
-                }
-                _ => {}
+    fn statement(&self, stmt: &Stmt, found: &mut Written) {
+        match &stmt.kind {
+            StmtKind::Assign { target, .. } | StmtKind::Connect { interrupt: target, .. } => {
+                self.target(target, &Writer::Program, found);
             }
-            for inner in stmt.kind.blocks() {
-                self.find(inner, found);
-            }
+            StmtKind::Call(call) => self.call(call, found),
+            _ => {}
         }
     }
 
     fn call(&self, call: &Call, found: &mut Written) {
-        let callee = match &call.callee {
-            Callee::Name(name) => self.program.resolve(self.id.module, &name.key),
-            Callee::Late(_) => None,
+        let (text, callee, instruction) = match &call.callee {
+            Callee::Name(name) => match self.program.resolve(self.id.module, &name.key) {
+                None if !builtins::may_write(&name.key) => return,
+                None => (name.text.as_str(), None, builtins::instruction(&name.key)),
+                callee => (name.text.as_str(), callee, None),
+            },
+            Callee::Late(_) => ("%…%", None, None),
         };
         // The effect of an undeclared routine on its arguments.
-        let outside = match (&call.callee, callee) {
-            (Callee::Name(name), None) if !builtins::may_write(&name.key) => return,
-            (Callee::Name(name), None)
-                if builtins::instruction(&name.key).is_some_and(Instruction::is_writing) =>
-            {
-                Writer::Program
-            }
-            (Callee::Name(name), _) => Writer::UnknownCall(name.text.as_str().into()),
-            (Callee::Late(_), _) => Writer::UnknownCall("%…%".into()),
+        let outside = match instruction {
+            Some(instruction) if instruction.is_writing() => Writer::Program,
+            _ => Writer::UnknownCall(text.into()),
         };
-        let only = match (&call.callee, callee) {
-            (Callee::Name(name), None) => {
-                builtins::instruction(&name.key).and_then(Instruction::written)
-            }
-            _ => None,
-        };
+        let only = instruction.and_then(Instruction::written);
         let mut position = 0;
         for arg in &call.args {
             let (expr, name) = match &arg.kind {

@@ -3,10 +3,9 @@
 
 use std::collections::BTreeSet;
 
-use super::hir::{
-    Arg, ArgKind, BinaryOp, Block, Call, Callee, Expr, ExprKind, ParamMode, Routine, StmtKind,
-};
+use super::hir::{Arg, BinaryOp, Call, Callee, Expr, ExprKind, ParamMode, Routine, Stmt, StmtKind};
 use super::program::{DataId, Program, RoutineId, Symbol};
+use super::walk::statements;
 use crate::rapid::builtins::{self, Instruction, Source};
 
 /// What an expression depends on.
@@ -28,12 +27,13 @@ pub struct Reads {
 
 /// What the evaluation of `expr` in the scope of a routine reads.
 pub fn reads(program: &Program, routine: RoutineId, expr: &Expr) -> Reads {
-    let mut walk = Walk { program, seen: BTreeSet::new(), found: Reads::default(), changes: false };
-    walk.expr(routine, expr);
-    Reads { fixed: !walk.changes, ..walk.found }
+    let mut analysis =
+        Analysis { program, seen: BTreeSet::new(), found: Reads::default(), changes: false };
+    analysis.expr(routine, expr);
+    Reads { fixed: !analysis.changes, ..analysis.found }
 }
 
-struct Walk<'p> {
+struct Analysis<'p> {
     program: &'p Program,
     /// Functions that were already analysed.
     seen: BTreeSet<RoutineId>,
@@ -42,50 +42,31 @@ struct Walk<'p> {
     changes: bool,
 }
 
-impl Walk<'_> {
+impl Analysis<'_> {
     fn expr(&mut self, at: RoutineId, expr: &Expr) {
+        let is_number = |expr: &Expr| matches!(expr.kind, ExprKind::Num(_));
         match &expr.kind {
             ExprKind::Ref(name) => self.name(at, &name.key, &name.text),
-            ExprKind::Field(base, _) | ExprKind::Unary(_, base) => self.expr(at, base),
-            ExprKind::Index(base, indices) => {
-                let is_number = |index: &Expr| matches!(index.kind, ExprKind::Num(_));
+            ExprKind::Index(_, indices) => {
                 self.found.may_raise |= !indices.iter().all(is_number);
-                self.expr(at, base);
-                self.all(at, indices);
             }
-            ExprKind::Aggregate(items) => self.all(at, items),
-            ExprKind::Binary(operator, left, right) => {
-                let divides = matches!(operator, BinaryOp::Div | BinaryOp::IntDiv | BinaryOp::Mod);
-                self.found.may_raise |= divides && !matches!(right.kind, ExprKind::Num(_));
-                self.expr(at, left);
-                self.expr(at, right);
-            }
-            ExprKind::Call(name, args) => {
-                self.arguments(at, args);
-                self.function(at, &name.key, &name.text);
+            ExprKind::Binary(BinaryOp::Div | BinaryOp::IntDiv | BinaryOp::Mod, _, right) => {
+                self.found.may_raise |= !is_number(right);
             }
             ExprKind::AnyPosition | ExprKind::Placeholder | ExprKind::Broken => {
-                self.effect("holds something that only the controller knows");
+                self.side_effect("holds something that only the controller knows");
             }
-            ExprKind::Num(_) | ExprKind::Str(_) | ExprKind::Bool(_) => {}
+            _ => {}
+        }
+        self.exprs(at, expr.parts());
+        if let ExprKind::Call(name, _) = &expr.kind {
+            self.function(at, &name.key, &name.text);
         }
     }
 
-    fn all<'e>(&mut self, at: RoutineId, exprs: impl IntoIterator<Item = &'e Expr>) {
+    fn exprs<'e>(&mut self, at: RoutineId, exprs: impl IntoIterator<Item = &'e Expr>) {
         for expr in exprs {
             self.expr(at, expr);
-        }
-    }
-
-    fn arguments(&mut self, at: RoutineId, args: &[Arg]) {
-        for arg in args {
-            match &arg.kind {
-                ArgKind::Positional(expr)
-                | ArgKind::Named(_, expr)
-                | ArgKind::Optional(_, Some(expr))
-                | ArgKind::Conditional(_, expr) => self.expr(at, expr),
-                ArgKind::Optional(_, None) => {}
-            }
         }
     }
 
@@ -106,7 +87,7 @@ impl Walk<'_> {
                 self.found.data.insert(id);
             }
             Some(Symbol::Routine(_) | Symbol::Ambiguous) => {
-                self.effect(&format!("names {text}, which is no data"));
+                self.side_effect(&format!("names {text}, which is no data"));
             }
             None if builtins::predefined(key).is_some() => {}
             None => {
@@ -124,14 +105,14 @@ impl Walk<'_> {
                     self.routine(id);
                 }
             }
-            Some(_) => self.effect(&format!("calls {text}, which is no function")),
+            Some(_) => self.side_effect(&format!("calls {text}, which is no function")),
             None => match builtins::function(key).map(|function| function.source) {
                 Some(Source::Arguments) => {}
                 Some(Source::Signal | Source::Call) => self.changes = true,
                 Some(Source::Position | Source::Kinematics | Source::Mounting) => {
-                    self.effect("is computed from where the robot stands");
+                    self.side_effect("is computed from where the robot stands");
                 }
-                _ => self.effect(&format!("calls {text}, whose value no condition can tell")),
+                _ => self.side_effect(&format!("calls {text}, whose value no condition can tell")),
             },
         }
     }
@@ -139,50 +120,32 @@ impl Walk<'_> {
     fn routine(&mut self, id: RoutineId) {
         let routine = self.program.routine(id);
         if !routine.error.is_empty() || routine.undo.is_some() {
-            self.effect(&format!("calls {}, which has a handler", routine.name.text));
+            self.side_effect(&format!("calls {}, which has a handler", routine.name.text));
         }
-        self.all(id, routine.data.iter().filter_map(|data| data.init.as_ref()));
-        self.block(id, &routine.body);
+        self.exprs(id, routine.data.iter().filter_map(|data| data.init.as_ref()));
+        for stmt in statements(&routine.body) {
+            self.statement(id, stmt);
+        }
     }
 
-    fn block(&mut self, at: RoutineId, block: &Block) {
-        for stmt in block {
-            match &stmt.kind {
-                StmtKind::Assign { target, value } => {
-                    self.expr(at, value);
-                    self.target(at, target);
-                }
-                StmtKind::If { branches, .. } => {
-                    self.all(at, branches.iter().map(|(condition, _)| condition));
-                }
-                StmtKind::For { from, to, step, .. } => {
-                    self.all(at, [from, to].into_iter().chain(step));
-                }
-                StmtKind::While { condition, .. } => self.expr(at, condition),
-                StmtKind::Test { value, cases, .. } => {
-                    self.expr(at, value);
-                    self.all(at, cases.iter().flat_map(|(values, _)| values));
-                }
-                StmtKind::Return(Some(value)) => self.expr(at, value),
-                StmtKind::Data(data) => {
-                    self.all(at, &data.init);
-                }
-                StmtKind::Call(call) => self.call(at, call),
-                StmtKind::Return(None) | StmtKind::Label(_) | StmtKind::Goto(_) => {}
-                StmtKind::Raise(_)
-                | StmtKind::Exit
-                | StmtKind::Retry
-                | StmtKind::TryNext
-                | StmtKind::Connect { .. }
-                | StmtKind::Placeholder
-                | StmtKind::Broken => {
-                    let name = &self.program.routine(at).name.text;
-                    self.effect(&format!("calls {name}, which may not come back with a value"));
-                }
+    fn statement(&mut self, at: RoutineId, stmt: &Stmt) {
+        match &stmt.kind {
+            StmtKind::Assign { target, value } => {
+                self.expr(at, value);
+                self.target(at, target);
             }
-            for inner in stmt.kind.blocks() {
-                self.block(at, inner);
+            StmtKind::Call(call) => self.call(at, call),
+            StmtKind::Raise(_)
+            | StmtKind::Exit
+            | StmtKind::Retry
+            | StmtKind::TryNext
+            | StmtKind::Connect { .. }
+            | StmtKind::Placeholder
+            | StmtKind::Broken => {
+                let name = &self.program.routine(at).name.text;
+                self.side_effect(&format!("calls {name}, which may not come back with a value"));
             }
+            kind => self.exprs(at, kind.exprs()),
         }
     }
 
@@ -194,16 +157,18 @@ impl Walk<'_> {
                 if builtins::instruction(&name.key).is_some_and(Instruction::counts)
                     && self.program.resolve(at.module, &name.key).is_none() =>
             {
-                self.arguments(at, &call.args);
-                if let Some(Arg { kind: ArgKind::Positional(target), .. }) = call.args.first() {
+                self.exprs(at, call.args.iter().filter_map(Arg::value));
+                if let Some(target) = call.args.first().and_then(Arg::positional) {
                     self.target(at, target);
                 }
             }
             Callee::Name(name) => {
-                self.effect(&format!("calls {own}, which runs {}", name.text));
+                self.side_effect(&format!("calls {own}, which runs {}", name.text));
             }
             Callee::Late(_) => {
-                self.effect(&format!("calls {own}, which runs a procedure with a computed name"));
+                self.side_effect(&format!(
+                    "calls {own}, which runs a procedure with a computed name"
+                ));
             }
         }
     }
@@ -213,7 +178,7 @@ impl Walk<'_> {
         match &target.kind {
             ExprKind::Field(base, _) => self.target(at, base),
             ExprKind::Index(base, indices) => {
-                self.all(at, indices);
+                self.exprs(at, indices);
                 self.target(at, base);
             }
             ExprKind::Ref(name) => {
@@ -225,14 +190,14 @@ impl Walk<'_> {
                 );
                 if !is_own {
                     let function = &routine.name.text;
-                    self.effect(&format!("calls {function}, which writes to {}", name.text));
+                    self.side_effect(&format!("calls {function}, which writes to {}", name.text));
                 }
             }
-            _ => self.effect("writes to something that is no data"),
+            _ => self.side_effect("writes to something that is no data"),
         }
     }
 
-    fn effect(&mut self, what: &str) {
+    fn side_effect(&mut self, what: &str) {
         self.changes = true;
         self.found.effect.get_or_insert_with(|| what.to_owned());
     }
@@ -240,16 +205,10 @@ impl Walk<'_> {
 
 /// Whether a name is data of the routine or the variable of one of its loops.
 fn is_own(routine: &Routine, key: &str) -> bool {
-    fn in_block(block: &Block, key: &str) -> bool {
-        block.iter().any(|stmt| {
-            let declares = match &stmt.kind {
-                StmtKind::Data(data) => data.name.key == key,
-                StmtKind::For { var, .. } => var.key == key,
-                _ => false,
-            };
-            declares || stmt.kind.blocks().into_iter().any(|inner| in_block(inner, key))
-        })
-    }
-    routine.data.iter().any(|data| data.name.key == key)
-        || routine.blocks().any(|block| in_block(block, key))
+    let declares = |stmt: &Stmt| match &stmt.kind {
+        StmtKind::Data(data) => data.name.key == key,
+        StmtKind::For { var, .. } => var.key == key,
+        _ => false,
+    };
+    routine.data.iter().any(|data| data.name.key == key) || routine.statements().any(declares)
 }

@@ -5,8 +5,8 @@
 
 use std::collections::BTreeMap;
 
-use super::hir::{Arg, ArgKind, Block, Callee, Expr, ExprKind, Ident, Stmt, StmtKind};
-use super::program::{Program, RoutineId};
+use super::hir::{Arg, ArgKind, Callee, Expr, ExprKind, Ident, Stmt, StmtKind};
+use super::program::Program;
 use crate::rapid::builtins::{self, Function, Instruction, SignalKind};
 
 /// A signal.
@@ -20,23 +20,20 @@ pub struct Signal {
 
 /// The signals of a program by lower-case name.
 pub fn signals(program: &Program) -> BTreeMap<String, Signal> {
-    let mut found = Found { program, module: 0, own: Vec::new(), signals: BTreeMap::new() };
-    for (module, body) in program.modules.iter().enumerate() {
-        found.module = module;
-        for (index, routine) in body.routines.iter().enumerate() {
-            let routine_id = RoutineId { module, index };
-            let declared = program.routine(routine_id);
-            found.own = declared.params.iter().map(|param| param.name.key.clone()).collect();
-            found.own.extend(declared.data.iter().map(|data| data.name.key.clone()));
-            for block in routine.blocks() {
-                found.block(block);
-            }
+    let mut collector =
+        SignalCollector { program, module: 0, own: Vec::new(), signals: BTreeMap::new() };
+    for (id, routine) in program.routines() {
+        collector.module = id.module;
+        collector.own = routine.params.iter().map(|param| param.name.key.clone()).collect();
+        collector.own.extend(routine.data.iter().map(|data| data.name.key.clone()));
+        for stmt in routine.statements() {
+            collector.statement(stmt);
         }
     }
-    for signal in found.signals.values_mut() {
+    for signal in collector.signals.values_mut() {
         signal.kind = signal.kind.or_else(|| by_name(&signal.name));
     }
-    found.signals
+    collector.signals
 }
 
 /// The kind by the usual prefix: `diPart`, `do_1`, but not a word such as `distance`.
@@ -59,7 +56,7 @@ fn by_use(key: &str) -> Option<SignalKind> {
     instruction.or_else(|| builtins::function(key).and_then(Function::signal))
 }
 
-struct Found<'a> {
+struct SignalCollector<'a> {
     program: &'a Program,
     module: usize,
     /// Names that the routine declares.
@@ -67,17 +64,7 @@ struct Found<'a> {
     signals: BTreeMap<String, Signal>,
 }
 
-impl Found<'_> {
-    /// The depth of the recursion is limited by the parser.
-    fn block(&mut self, block: &Block) {
-        for stmt in block {
-            self.statement(stmt);
-            for inner in stmt.kind.blocks() {
-                self.block(inner);
-            }
-        }
-    }
-
+impl SignalCollector<'_> {
     fn statement(&mut self, stmt: &Stmt) {
         match &stmt.kind {
             StmtKind::Call(call) => {
@@ -109,6 +96,7 @@ impl Found<'_> {
         }
     }
 
+    /// The depth of the recursion is limited by the parser.
     fn expr(&mut self, expr: &Expr) {
         match &expr.kind {
             ExprKind::Ref(name) => self.name(name, None),

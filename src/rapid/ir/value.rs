@@ -99,6 +99,11 @@ impl Origin {
         }
     }
 
+    /// Whether an input is among them.
+    pub(super) fn has_input(&self) -> bool {
+        self.iter().any(|dependence| matches!(dependence, Dependence::Input(_)))
+    }
+
     /// The dependences in order.
     pub fn iter(&self) -> impl Iterator<Item = &Dependence> {
         self.0.iter()

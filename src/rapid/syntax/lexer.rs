@@ -6,8 +6,8 @@
 use memchr::{memchr2, memchr3};
 use nom::branch::alt;
 use nom::bytes::complete::{tag, take_while1};
-use nom::character::complete::{digit0, digit1, one_of};
-use nom::combinator::{opt, recognize};
+use nom::character::complete::one_of;
+use nom::combinator::recognize;
 use nom::{IResult, Parser};
 
 use super::token::{KEYWORDS, TokenKind, Tokens};
@@ -180,17 +180,17 @@ fn word_kind(word: &[u8]) -> TokenKind {
 fn other(input: &[u8]) -> (TokenKind, usize) {
     let next = input.get(1).copied().unwrap_or(0);
     match input[0] {
-        b'.' if next.is_ascii_digit() => (TokenKind::Number, length(number, input)),
+        b'.' if next.is_ascii_digit() => (TokenKind::Number, number_end(input, 0)),
         b'.' => (TokenKind::Dot, 1),
         b'!' => (TokenKind::Comment, line_end(input)),
         b'"' => string(input),
         b'%' if input.starts_with(b"%%%") => (TokenKind::HeaderMark, 3),
         b'%' => (TokenKind::Percent, 1),
-        b'<' => match (next, length(placeholder, input)) {
-            (b'>', _) => (TokenKind::NotEqual, 2),
-            (b'=', _) => (TokenKind::LessEqual, 2),
-            (_, 1) => (TokenKind::Less, 1),
-            (_, length) => (TokenKind::Placeholder, length),
+        b'<' if next == b'>' => (TokenKind::NotEqual, 2),
+        b'<' if next == b'=' => (TokenKind::LessEqual, 2),
+        b'<' => match placeholder(input) {
+            Ok((_, taken)) => (TokenKind::Placeholder, taken.len()),
+            Err(_) => (TokenKind::Less, 1),
         },
         b'>' if next == b'=' => (TokenKind::GreaterEqual, 2),
         b'>' => (TokenKind::Greater, 1),
@@ -212,36 +212,30 @@ fn beyond_ascii(bytes: &[u8], at: usize, high: High) -> (TokenKind, usize) {
     }
 }
 
-/// Number of bytes that a recogniser accepts at the start, at least one.
-fn length<'a>(recogniser: impl Fn(&'a [u8]) -> Lexed<'a>, input: &'a [u8]) -> usize {
-    recogniser(input).map_or(1, |(_, taken)| taken.len().max(1))
-}
-
-/// End of the number at `at`, which starts with a digit. Most numbers have no base prefix.
+/// End of the number at `at`: `12`, `1.`, `.5`, `1.5E-3`, or one with a base prefix.
 fn number_end(bytes: &[u8], at: usize) -> usize {
-    let mut end = skip(bytes, at + 1, &DIGIT);
+    let mut end = skip(bytes, at, &DIGIT);
     if bytes.get(end) == Some(&b'.') {
         end = skip(bytes, end + 1, &DIGIT);
     }
     match bytes.get(end..).unwrap_or_default() {
         [b'E' | b'e', b'0'..=b'9', ..] => skip(bytes, end + 2, &DIGIT),
         [b'E' | b'e', b'+' | b'-', b'0'..=b'9', ..] => skip(bytes, end + 3, &DIGIT),
-        [byte, ..] if byte.is_ascii_alphabetic() => at + length(number, &bytes[at..]),
+        [byte, ..] if byte.is_ascii_alphabetic() => {
+            based_number(&bytes[at..]).map_or(end, |(_, taken)| at + taken.len())
+        }
         _ => end,
     }
 }
 
-/// `0xFF`, `0b01`, `0o17`, `12`, `1.`, `.5`, `1.5E-3`.
-fn number(input: &[u8]) -> Lexed<'_> {
-    let based = alt((
+/// `0xFF`, `0b01`, `0o17`.
+fn based_number(input: &[u8]) -> Lexed<'_> {
+    alt((
         recognize((tag("0"), one_of("xX"), take_while1(|b: u8| b.is_ascii_hexdigit()))),
         recognize((tag("0"), one_of("bB"), take_while1(|b| matches!(b, b'0' | b'1')))),
         recognize((tag("0"), one_of("oO"), take_while1(|b| matches!(b, b'0'..=b'7')))),
-    ));
-    let mantissa =
-        alt((recognize((digit1, opt((tag("."), digit0)))), recognize((tag("."), digit1))));
-    let exponent = (one_of("eE"), opt(one_of("+-")), digit1);
-    alt((based, recognize((mantissa, opt(exponent))))).parse(input)
+    ))
+    .parse(input)
 }
 
 /// A placeholder such as `<SMT>`.
@@ -398,7 +392,7 @@ mod tests {
     }
 
     #[test]
-    fn wide_spaces_are_gaps() {
+    fn wide_spaces_are_white_space() {
         assert_eq!(kinds("a\u{3000}:=".as_bytes()), [Identifier, Whitespace, Assign]);
         assert_eq!(kinds(b"a\xA1\xA1:="), [Identifier, Whitespace, Assign]);
         assert_eq!(kinds(b"a\xA0:="), [Identifier, Whitespace, Assign]);
@@ -409,7 +403,7 @@ mod tests {
     }
 
     #[test]
-    fn marks_are_told_apart() {
+    fn similar_tokens_are_distinguished() {
         assert_eq!(kinds(b"%%%"), [HeaderMark]);
         assert_eq!(kinds(b"%a%"), [Percent, Identifier, Percent]);
         assert_eq!(kinds(b"<SMT>"), [Placeholder]);

@@ -3,7 +3,6 @@
 //! The node kinds of the tree are the productions of `grammar/`, one to one; `parser` has one
 //! file for each file of the grammar.
 
-pub mod ast;
 mod error;
 mod lexer;
 mod node;

@@ -162,10 +162,23 @@ node_kinds! {
 }
 
 impl NodeKind {
-    /// Whether the production is an expression.
+    /// Whether it stands in the place of a value: an expression, a placeholder or an error.
     #[must_use]
-    pub fn is_expression(self) -> bool {
+    pub fn is_value(self) -> bool {
         (NodeKind::AnyPosition..=NodeKind::BinaryExpression).contains(&self)
+            || matches!(self, NodeKind::Placeholder | NodeKind::Error)
+    }
+
+    /// Whether it is an argument other than a bare value.
+    #[must_use]
+    pub fn is_named_argument(self) -> bool {
+        (NodeKind::NamedArgument..=NodeKind::ConditionalArgument).contains(&self)
+    }
+
+    /// Whether it is the declaration of a routine.
+    #[must_use]
+    pub fn is_routine(self) -> bool {
+        (NodeKind::ProcDeclaration..=NodeKind::TrapDeclaration).contains(&self)
     }
 
     /// Whether the production is a statement other than data, an empty one or a placeholder.

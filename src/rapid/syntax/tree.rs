@@ -121,6 +121,13 @@ impl<'t> Node<'t> {
         self.children().find(|child| child.kind() == kind)
     }
 
+    /// The name of the procedure that a call statement calls, unless it is bound late.
+    #[must_use]
+    pub fn callee(self) -> Option<Node<'t>> {
+        let is_call = self.kind() == NodeKind::CallStatement;
+        self.children().next().filter(|first| is_call && first.kind() == NodeKind::Name)
+    }
+
     /// The node and its descendants, in preorder.
     pub fn subtree(self) -> impl Iterator<Item = Node<'t>> + use<'t> {
         let tree = self.tree;

@@ -1,5 +1,7 @@
 //! Replacements of byte ranges; all other bytes stay unchanged.
 
+use std::ops::Range;
+
 use thiserror::Error;
 
 use super::span::Span;
@@ -18,23 +20,19 @@ pub struct Edit {
 pub enum EditError {
     /// Two edits replace the same bytes.
     #[error(
-        "two edits overlap at bytes {first_start}..{first_end} and {second_start}..{second_end}; \
+        "two edits overlap at bytes {first:?} and {second:?}; \
          apply one of them and read the file again before the other"
     )]
     Overlap {
-        /// Start of the earlier edit.
-        first_start: u32,
-        /// End of the earlier edit.
-        first_end: u32,
-        /// Start of the later edit.
-        second_start: u32,
-        /// End of the later edit.
-        second_end: u32,
+        /// Bytes of the earlier edit.
+        first: Range<u32>,
+        /// Bytes of the later edit.
+        second: Range<u32>,
     },
     /// An edit outside the file, or one that ends before it starts.
     #[error(
-        "the edit of bytes {start}..{end} does not lie in the file of {length} bytes; \
-         make edits from the bytes that they are applied to"
+        "the edit of bytes {start}..{end} is outside the file, which has {length} bytes; \
+         compute the edits from the same bytes to which they are applied"
     )]
     Outside {
         /// Start of the edit.
@@ -66,12 +64,8 @@ pub fn apply(bytes: &[u8], edits: &[Edit]) -> Result<Vec<u8>, EditError> {
         if let Some(first) = previous
             && start < done
         {
-            return Err(EditError::Overlap {
-                first_start: first.span.start,
-                first_end: first.span.end,
-                second_start: start,
-                second_end: end,
-            });
+            let first = first.span.start..first.span.end;
+            return Err(EditError::Overlap { first, second: start..end });
         }
         out.extend_from_slice(&bytes[done as usize..start as usize]);
         out.extend_from_slice(&edit.text);
@@ -102,12 +96,7 @@ mod tests {
         let edits = [edit(2, 5, "a"), edit(4, 6, "b")];
         assert_eq!(
             apply(b"0123456789", &edits),
-            Err(EditError::Overlap {
-                first_start: 2,
-                first_end: 5,
-                second_start: 4,
-                second_end: 6
-            })
+            Err(EditError::Overlap { first: 2..5, second: 4..6 })
         );
         assert_eq!(apply(b"0123456789", &[edit(2, 4, ""), edit(4, 6, "b")]), Ok(b"01b6789".into()));
     }

@@ -13,7 +13,7 @@ use super::common::{self, Format};
 use super::input::{self, InputFile, Place};
 use crate::rapid::builtins::is_of_move_family;
 use crate::rapid::diagnostics::{self, Diagnostic, Label, Paint};
-use crate::rapid::syntax::{self, NodeKind, Parse, SyntaxError, ast};
+use crate::rapid::syntax::{self, NodeKind, Parse, SyntaxError};
 use crate::rapid::text::{self, FileId, SourceFile, Span};
 
 /// Parse RAPID and report its syntax errors.
@@ -153,7 +153,7 @@ fn report(file: &InputFile, parse: &Parse, backups: &[(PathBuf, Backup)]) -> Fil
     let mut movements = 0;
     for node in parse.tree.nodes() {
         let kind = node.kind();
-        routines += usize::from(ast::Routine::cast(node).is_some());
+        routines += usize::from(kind.is_routine());
         statements += usize::from(kind.is_statement());
         movements +=
             usize::from(kind == NodeKind::CallStatement && is_of_move_family_call(node, source));
@@ -186,8 +186,7 @@ fn report(file: &InputFile, parse: &Parse, backups: &[(PathBuf, Backup)]) -> Fil
 }
 
 fn is_of_move_family_call(node: syntax::Node<'_>, source: &SourceFile) -> bool {
-    ast::Call::cast(node)
-        .and_then(ast::Call::name)
+    node.callee()
         .is_some_and(|name| is_of_move_family(&String::from_utf8_lossy(name.text(&source.bytes))))
 }
 

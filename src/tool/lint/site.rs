@@ -6,7 +6,7 @@ use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 
 use super::flow::Place;
 use super::quiet::Quiet;
-use crate::rapid::builtins::{MoveForm, MoveSignature, movement};
+use crate::rapid::builtins::{MoveForm, MoveKind, MoveSignature, movement};
 use crate::rapid::ir::exec::evaluate;
 use crate::rapid::ir::hir::{
     ArgKind, Block, Call, Callee, Expr, ExprKind, Routine, Stmt, StmtKind,
@@ -101,7 +101,7 @@ impl Goal {
 impl Site<'_> {
     /// Whether it only moves, without options that couple it to other actions.
     pub fn is_plain(&self) -> bool {
-        self.signature.plain
+        self.signature.kind == MoveKind::Plain
             && self.signature.form != MoveForm::ExternalJoint
             && self.options.iter().all(|key| {
                 matches!(*key, "wobj" | "tool" | "speed" | "zone" | "topoint" | "tojointpos")

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::rapid::ir::exec::{Machine, Note, Waited, execute};
+use crate::rapid::ir::exec::{Machine, Note, WaitResult, execute};
 use crate::rapid::ir::movement::{Movement, Output, Unresolved, Wait};
 use crate::rapid::ir::program::{Program, RoutineId};
 use crate::rapid::text::Span;
@@ -139,7 +139,7 @@ impl Recording {
 }
 
 impl Machine for Recording {
-    fn moves(&mut self, movement: Result<Movement, Unresolved>) {
+    fn on_movement(&mut self, movement: Result<Movement, Unresolved>) {
         match movement {
             Ok(movement) => self.steps.push(Recorded::Move(Box::new(movement))),
             Err(unresolved) => {
@@ -148,12 +148,12 @@ impl Machine for Recording {
         }
     }
 
-    fn waits(&mut self, wait: Wait) -> Waited {
+    fn on_wait(&mut self, wait: Wait) -> WaitResult {
         self.steps.push(Recorded::Wait(Box::new(wait)));
-        Waited::Ended
+        WaitResult::Ended
     }
 
-    fn sets(&mut self, output: Output) {
+    fn on_output(&mut self, output: Output) {
         self.steps.push(Recorded::Output(output));
     }
 
@@ -161,7 +161,7 @@ impl Machine for Recording {
         None
     }
 
-    fn is_full(&self) -> bool {
+    fn is_at_limit(&self) -> bool {
         self.steps.len() > MOST_STEPS
     }
 }

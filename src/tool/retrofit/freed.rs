@@ -1,7 +1,7 @@
 //! Movements and waits that a comment of the user makes free.
 
 use crate::rapid::builtins::is_movement;
-use crate::rapid::syntax::{self, NodeKind, TokenKind, ast};
+use crate::rapid::syntax::{self, NodeKind, TokenKind};
 use crate::rapid::text::{SourceFile, Span};
 
 /// Text of the comment without `!` and white space.
@@ -23,8 +23,7 @@ pub fn freed(file: &SourceFile) -> Vec<Span> {
         .collect();
     let calls = parse.tree.nodes().filter(|node| node.kind() == NodeKind::CallStatement);
     let free = calls.filter(|node| {
-        let name = ast::Call::cast(*node).and_then(ast::Call::name);
-        let name = name.map(|name| String::from_utf8_lossy(name.text(&file.bytes)));
+        let name = node.callee().map(|name| String::from_utf8_lossy(name.text(&file.bytes)));
         name.is_some_and(|name| is_movement(&name) || name.eq_ignore_ascii_case("WaitTime"))
     });
     free.map(|node| Span { file: file.id, start: node.range().start, end: node.range().end })

@@ -6,7 +6,8 @@ use super::executor::{Executor, Poll};
 use super::flow::{Flow, number_text};
 use super::operators::equal;
 use crate::rapid::ir::hir::{Block, Expr, Stmt, StmtKind};
-use crate::rapid::ir::value::{Datum, Dependence};
+use crate::rapid::ir::value::Datum;
+use crate::rapid::ir::walk::statements;
 
 /// The value of a condition.
 pub(super) enum Condition {
@@ -29,42 +30,35 @@ impl Executor<'_> {
         for (condition, block) in branches {
             let is = self.condition(condition);
             input = self.seen_input.clone().or(input);
-            match is {
-                Condition::Known(false) if self.seen_input.is_some() => {
-                    self.note_branch(condition, "FALSE", Some(block));
-                }
-                Condition::Known(false) => {}
-                Condition::Assumed(false) => {
-                    self.note_branch(condition, "FALSE", Some(block));
-                    decided = Some(Poll { condition: condition.clone(), value: false });
-                }
-                Condition::Known(true) => {
-                    if self.seen_input.is_some() {
-                        self.note_branch(condition, "TRUE", otherwise);
-                    }
-                    return decided_by(decided, self.block_by(input, block));
-                }
-                Condition::Assumed(true) => {
-                    self.note_branch(condition, "TRUE", otherwise);
-                    decided = Some(Poll { condition: condition.clone(), value: true });
-                    return decided_by(decided, self.block_by(input, block));
-                }
+            let (value, is_assumed) = match is {
+                Condition::Known(value) => (value, false),
+                Condition::Assumed(value) => (value, true),
                 Condition::Unknown(why) => {
-                    self.unresolved(
-                        condition.span,
-                        format!("the condition is not known{why}: taken as FALSE"),
-                    );
+                    let reason = format!("the condition is not known{why}: taken as FALSE");
+                    self.unresolved(condition.span, reason);
+                    continue;
                 }
+            };
+            if is_assumed || self.seen_input.is_some() {
+                let (taken, other) =
+                    if value { ("TRUE", otherwise) } else { ("FALSE", Some(block)) };
+                self.note_branch(condition, taken, other);
+            }
+            if is_assumed {
+                decided = Some(Poll { condition: condition.clone(), value });
+            }
+            if value {
+                return decided_by(decided, self.branch(input, block));
             }
         }
         match otherwise {
-            Some(block) => decided_by(decided, self.block_by(input, block)),
+            Some(block) => decided_by(decided, self.branch(input, block)),
             None => Flow::Next,
         }
     }
 
     /// Runs a block; the data that it assigns depend on `input`, which decided that it runs.
-    fn block_by(&mut self, input: Option<Arc<str>>, block: &Block) -> Flow {
+    fn branch(&mut self, input: Option<Arc<str>>, block: &Block) -> Flow {
         let depth = self.deciding.len();
         self.deciding.extend(input);
         let flow = self.block(block);
@@ -73,40 +67,34 @@ impl Executor<'_> {
     }
 
     /// Marks the data that a skipped block would have assigned: they depend on the deciding input.
-    fn left_out(&mut self, block: &Block) {
-        for stmt in block {
+    fn mark_skipped(&mut self, block: &Block) {
+        for stmt in statements(block) {
             if let StmtKind::Assign { target, .. } = &stmt.kind
                 && let Some(cell) = target.base().and_then(|name| self.cell_of(name))
             {
                 self.cells[cell].input.clone_from(&self.seen_input);
-            }
-            for inner in stmt.kind.blocks() {
-                self.left_out(inner);
             }
         }
     }
 
     /// Notes the assumed value of an `IF` on inputs, if the other branch contains instructions.
     fn note_branch(&mut self, condition: &Expr, taken: &str, left_out: Option<&Block>) {
-        if let Some(block) = left_out {
-            self.left_out(block);
-        }
-        let calls = left_out.map_or(0, |block| calls(block));
+        let Some(block) = left_out else { return };
+        self.mark_skipped(block);
+        let calls = calls(block);
         if calls == 0 {
             return;
         }
         let what = if calls == 1 { "instruction" } else { "instructions" };
-        let state = self.how_to_state(condition);
-        self.unresolved(
-            condition.span,
-            format!(
-                "depends on inputs, taken as {taken}: the other branch ({calls} {what}) was not \
-                 run; {state}"
-            ),
+        let state = self.assume_hint(condition);
+        let reason = format!(
+            "depends on inputs, taken as {taken}: the other branch ({calls} {what}) was not run; \
+             {state}"
         );
+        self.unresolved(condition.span, reason);
     }
 
-    fn how_to_state(&mut self, expr: &Expr) -> String {
+    fn assume_hint(&mut self, expr: &Expr) -> String {
         let seen = self.seen_input.clone();
         let signal = self.first_signal(expr).or(seen);
         format!("--assume {}=LEVEL states another", signal.as_deref().unwrap_or("SIGNAL"))
@@ -127,9 +115,8 @@ impl Executor<'_> {
 
     fn read_condition(&mut self, expr: &Expr) -> Condition {
         self.seen_input = None;
-        let value = self.eval(expr);
-        let value = self.level(value);
-        let input = value.origin.iter().any(|d| matches!(d, Dependence::Input(_)));
+        let value = self.eval_level(expr);
+        let input = value.origin.has_input();
         match value.datum {
             Datum::Bool(b) if input => Condition::Assumed(b),
             Datum::Bool(b) => Condition::Known(b),
@@ -149,36 +136,24 @@ impl Executor<'_> {
         default: Option<&Block>,
     ) -> Flow {
         self.seen_input = None;
-        let tested = self.eval(value);
-        let tested = self.level(tested);
+        let tested = self.eval_level(value);
         let input = self.seen_input.clone();
+        let mut taken = None;
         if let Some(unknown) = tested.datum.first_unknown() {
-            let reason = unknown.reason.clone();
-            let taken = if default.is_some() { "DEFAULT is taken" } else { "no CASE is taken" };
-            let reason = format!("the TEST value is not known ({reason}): {taken}");
+            let reason = &unknown.reason;
+            let what = if default.is_some() { "DEFAULT is taken" } else { "no CASE is taken" };
+            let reason = format!("the TEST value is not known ({reason}): {what}");
             self.unresolved(value.span, reason);
         } else {
-            let mut taken = None;
-            'cases: for (i, (values, _)) in cases.iter().enumerate() {
-                for expr in values {
-                    let candidate = self.eval(expr);
-                    let candidate = self.level(candidate);
-                    if equal(&candidate.datum, &tested.datum) {
-                        taken = Some(i);
-                        break 'cases;
-                    }
-                }
-            }
+            let mut is_tested = |expr| equal(&self.eval_level(expr).datum, &tested.datum);
+            taken = cases.iter().position(|(values, _)| values.iter().any(&mut is_tested));
             if input.is_some() {
                 self.seen_input.clone_from(&input);
                 self.note_case(value, &tested.datum, taken, cases, default);
             }
-            if let Some((_, block)) = taken.and_then(|i| cases.get(i)) {
-                return self.block_by(input, block);
-            }
         }
-        match default {
-            Some(block) => self.block_by(input, block),
+        match taken.map(|case| &cases[case].1).or(default) {
+            Some(block) => self.branch(input, block),
             None => Flow::Next,
         }
     }
@@ -196,7 +171,7 @@ impl Executor<'_> {
         let mut blocks: Vec<&Block> = others.map(|(_, (_, block))| block).collect();
         blocks.extend(default.filter(|_| taken.is_some()));
         for block in &blocks {
-            self.left_out(block);
+            self.mark_skipped(block);
         }
         let mut left_out: Vec<usize> = blocks.into_iter().map(|block| calls(block)).collect();
         left_out.retain(|calls| *calls > 0);
@@ -211,15 +186,13 @@ impl Executor<'_> {
             Datum::Bool(b) => b.to_string().to_uppercase(),
             _ => "it is".to_owned(),
         };
-        let state = self.how_to_state(value);
-        self.unresolved(
-            value.span,
-            format!(
-                "depends on inputs, taken as {level}: {} other {branches} ({count} {what}) not \
-                 run; {state}",
-                left_out.len()
-            ),
+        let state = self.assume_hint(value);
+        let reason = format!(
+            "depends on inputs, taken as {level}: {} other {branches} ({count} {what}) not run; \
+             {state}",
+            left_out.len()
         );
+        self.unresolved(value.span, reason);
     }
 }
 
@@ -233,9 +206,5 @@ fn decided_by(decided: Option<Poll>, flow: Flow) -> Flow {
 
 /// Number of instructions and calls in a block, inner blocks included.
 fn calls(block: &[Stmt]) -> usize {
-    let of = |stmt: &Stmt| match &stmt.kind {
-        StmtKind::Call(_) => 1,
-        kind => kind.blocks().into_iter().map(|inner| calls(inner)).sum(),
-    };
-    block.iter().map(of).sum()
+    statements(block).filter(|stmt| matches!(stmt.kind, StmtKind::Call(_))).count()
 }

@@ -4,8 +4,9 @@ use super::eval::declared_twice;
 use super::executor::{Cell, CellId, Executor, Frame, MAX_CALL_DEPTH};
 use super::flow::{Flow, Raised};
 use crate::rapid::ir::hir::{
-    Arg, ArgKind, Call, Callee, Expr, ExprKind, Param, ParamMode, RoutineKind, Stmt,
+    Arg, ArgKind, Call, Callee, Expr, ExprKind, Ident, Param, ParamMode, RoutineKind, Stmt,
 };
+use crate::rapid::ir::movement::Unresolved;
 use crate::rapid::ir::program::{RoutineId, Symbol};
 use crate::rapid::ir::value::{Datum, Dependence, Origin};
 use crate::rapid::text::Span;
@@ -17,7 +18,7 @@ impl Executor<'_> {
             Callee::Name(name) => (name.key.clone(), name.text.clone(), name.span),
             Callee::Late(expr) => {
                 let Datum::Text(name) = self.eval(expr).datum else {
-                    self.opaque(stmt.span, "the procedure called by %…% is not known");
+                    self.unknown_effect(stmt.span, "the procedure called by %…% is not known");
                     return Flow::Next;
                 };
                 // "Module:Proc" names a local procedure of a module.
@@ -31,8 +32,8 @@ impl Executor<'_> {
                 other => other,
             },
             Some(Symbol::Ambiguous) => {
-                self.forget(&call.args, &format!("may be changed by {text}"));
-                self.opaque(stmt.span, &declared_twice(&text));
+                self.mark_unknown(&call.args, &format!("may be changed by {text}"));
+                self.unknown_effect(stmt.span, &declared_twice(&text));
                 Flow::Next
             }
             _ => self.instruction(stmt, &key, &text, &call.args),
@@ -53,21 +54,18 @@ impl Executor<'_> {
         }
         let program = self.program;
         let params = &program.routine(id).params;
-        let mut required = params.iter().filter(|p| !p.optional);
+        let named = |name: &Ident| params.iter().find(|param| param.name.key == name.key);
+        let mut required = params.iter().filter(|param| !param.optional);
         let mut names = Vec::new();
         let mut present = Vec::new();
         for arg in args {
             let (param, expr) = match &arg.kind {
                 ArgKind::Positional(expr) => (required.next(), Some(expr)),
-                ArgKind::Named(name, expr) => {
-                    (params.iter().find(|p| p.name.key == name.key), Some(expr))
-                }
-                ArgKind::Optional(name, expr) => {
-                    (params.iter().find(|p| p.name.key == name.key), expr.as_ref())
-                }
+                ArgKind::Named(name, expr) => (named(name), Some(expr)),
+                ArgKind::Optional(name, expr) => (named(name), expr.as_ref()),
                 ArgKind::Conditional(name, outer) => {
                     let Some(outer) = self.given(outer) else { continue };
-                    if let Some(param) = params.iter().find(|p| p.name.key == name.key) {
+                    if let Some(param) = named(name) {
                         present.push(param.name.key.clone());
                         if let Some(cell) = self.cell_of(outer) {
                             names.push((param.name.key.clone(), cell));
@@ -99,23 +97,15 @@ impl Executor<'_> {
         }
         self.seen_input = None;
         let mut value = self.eval(expr);
-        if let Datum::Signal(_) = value.datum {
-            self.seen_input = None;
-        }
-        let input = self.seen_input.clone();
         // A signal keeps its own type.
-        if !matches!(value.datum, Datum::Signal(_)) {
+        if matches!(value.datum, Datum::Signal(_)) {
+            self.seen_input = None;
+        } else {
             value.type_key = param.type_name.key.as_str().into();
         }
+        let input = self.seen_input.clone();
         let reading = Origin::of(Dependence::Local(param.name.text.as_str().into()));
-        self.cells.push(Cell {
-            value,
-            reading,
-            history: Origin::default(),
-            read_only: false,
-            input,
-        });
-        self.cells.len() - 1
+        self.new_cell(Cell { input, ..Cell::new(value, reading) })
     }
 
     /// Runs a routine whose parameters are bound.
@@ -133,13 +123,15 @@ impl Executor<'_> {
         for (_, cell) in &names {
             given.join(&self.cells[*cell].value.origin);
         }
-        let name = routine.name.text.as_str().into();
         self.frames.push(Frame {
+            module: id.module,
+            routine: routine.name.text.as_str().into(),
+            id: Some(id),
             names,
             called_at,
             present,
             base: cells,
-            ..Frame::new(id.module, name, Some(id))
+            ..Frame::default()
         });
         for data in &routine.data {
             self.declare_local(data);
@@ -168,12 +160,8 @@ impl Executor<'_> {
     }
 
     /// Reports a statement with an unknown effect on position and time.
-    pub(super) fn opaque(&mut self, span: Span, reason: &str) {
+    pub(super) fn unknown_effect(&mut self, span: Span, reason: &str) {
         self.unresolved(span, reason);
-        self.machine.moves(Err(crate::rapid::ir::movement::Unresolved {
-            span,
-            reason: reason.to_owned(),
-            moves: true,
-        }));
+        self.machine.on_movement(Err(Unresolved { span, reason: reason.to_owned(), moves: true }));
     }
 }

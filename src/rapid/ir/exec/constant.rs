@@ -1,7 +1,7 @@
 //! Values that do not depend on the statements executed before.
 
 use super::executor::{Executor, Frame};
-use super::machine::{Machine, Waited};
+use super::machine::{Machine, WaitResult};
 use crate::rapid::ir::hir::{Expr, ExprKind, Ident};
 use crate::rapid::ir::movement::{Movement, Output, Unresolved, Wait};
 use crate::rapid::ir::program::{DataId, Program};
@@ -10,12 +10,10 @@ use crate::rapid::ir::value::{Datum, Dependence, Value};
 /// The value of an expression in the scope of a module. It is unknown, with the reason, if it
 /// depends on a variable that the program writes, on an input or on the robot.
 pub fn evaluate(program: &Program, module: usize, expr: &Expr) -> Value {
-    let mut nowhere = Nowhere;
-    let mut executor = Executor::new(program, &mut nowhere);
-    let routine = "".into();
-    executor.frames.push(Frame::new(module, routine, None));
-    let value = executor.eval(expr);
-    let mut value = executor.level(value);
+    let mut machine = NoMachine;
+    let mut executor = Executor::new(program, &mut machine);
+    executor.frames.push(Frame { module, ..Frame::default() });
+    let mut value = executor.eval_level(expr);
     if let Some(reason) = value.origin.iter().find_map(changes)
         && value.datum.first_unknown().is_none()
     {
@@ -48,20 +46,14 @@ fn changes(dependence: &Dependence) -> Option<String> {
 }
 
 /// A machine without effects and without a position.
-struct Nowhere;
+struct NoMachine;
 
-impl Machine for Nowhere {
-    fn moves(&mut self, _: Result<Movement, Unresolved>) {}
-    fn waits(&mut self, _: Wait) -> Waited {
-        Waited::Ended
+impl Machine for NoMachine {
+    fn on_movement(&mut self, _: Result<Movement, Unresolved>) {}
+    fn on_wait(&mut self, _: Wait) -> WaitResult {
+        WaitResult::Ended
     }
-    fn sets(&mut self, _: Output) {}
-    fn joints(&mut self) -> Option<[f64; 6]> {
-        None
-    }
-    fn is_full(&self) -> bool {
-        false
-    }
+    fn on_output(&mut self, _: Output) {}
 }
 
 #[cfg(test)]

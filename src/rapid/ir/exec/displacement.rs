@@ -1,14 +1,11 @@
 //! Program displacement from two points.
 
-use std::sync::Arc;
-
 use nalgebra::Isometry3;
 
 use super::arguments::Arguments;
 use super::executor::Executor;
 use crate::rapid::ir::convert;
 use crate::rapid::ir::hir::Stmt;
-use crate::rapid::ir::movement::Settings;
 
 impl Executor<'_> {
     /// `PDispOn [\Rot] \ExeP:=there, programmed, tool`: shifts all targets by the displacement
@@ -20,22 +17,20 @@ impl Executor<'_> {
         };
         let there = arguments.option_value("exep").and_then(&mut target);
         let programmed = arguments.positional.first().copied().and_then(&mut target);
-        let mut settings = Settings::clone(&self.settings);
-        settings.other.retain(|name| !name.eq_ignore_ascii_case(text));
-        match there.zip(programmed) {
-            Some((there, programmed)) if arguments.has_option("rot") => {
-                settings.displacement = Some(there * programmed.inverse());
+        let displacement = there.zip(programmed).map(|(there, programmed)| {
+            if arguments.has_option("rot") {
+                return there * programmed.inverse();
             }
-            Some((there, programmed)) => {
-                let shift = there.translation.vector - programmed.translation.vector;
-                settings.displacement = Some(Isometry3::translation(shift.x, shift.y, shift.z));
-            }
-            None => {
-                settings.other.push(text.into());
-                let reason = format!("{text} with points that are not known: simulated without it");
-                self.unresolved(stmt.span, reason);
-            }
+            let shift = there.translation.vector - programmed.translation.vector;
+            Isometry3::translation(shift.x, shift.y, shift.z)
+        });
+        if displacement.is_some() {
+            self.clear_unmodelled(&[&text.to_lowercase()]);
+            self.settings_mut().displacement = displacement;
+        } else {
+            self.mark_unmodelled(text);
+            let reason = format!("{text} with points that are not known: simulated without it");
+            self.unresolved(stmt.span, reason);
         }
-        self.settings = Arc::new(settings);
     }
 }

@@ -33,16 +33,14 @@ impl Executor<'_> {
                 let mut origin = Origin::default();
                 let mut list = Vec::with_capacity(items.len());
                 for item in items {
-                    let value = self.eval(item);
-                    let value = self.level(value);
+                    let value = self.eval_level(item);
                     origin.join(&value.origin);
                     list.push(value.datum);
                 }
                 Value { datum: Datum::List(list), type_key: "".into(), origin }
             }
             ExprKind::Unary(op, operand) => {
-                let value = self.eval(operand);
-                let value = self.level(value);
+                let value = self.eval_level(operand);
                 let datum = match (op, value.datum) {
                     (UnaryOp::Plus, datum @ Datum::Num(_)) => datum,
                     (UnaryOp::Minus, Datum::Num(x)) => Datum::Num(-x),
@@ -83,6 +81,12 @@ impl Executor<'_> {
         }
     }
 
+    /// The value of an expression; that of a signal is its level.
+    pub(super) fn eval_level(&mut self, expr: &Expr) -> Value {
+        let value = self.eval(expr);
+        self.level(value)
+    }
+
     /// The level of a signal as a number; any other value unchanged.
     pub(super) fn level(&mut self, value: Value) -> Value {
         let Datum::Signal(name) = &value.datum else { return value };
@@ -104,34 +108,30 @@ impl Executor<'_> {
     }
 
     fn read(&mut self, name: &Ident) -> Value {
-        match self.cell_of(name) {
-            Some(cell) => {
-                let cell = &self.cells[cell];
-                let mut value = cell.value.clone();
-                if let Some(input) = &cell.input {
-                    self.seen_input = Some(input.clone());
-                }
-                // The origin states the name that was read, not the origin of the stored value.
-                value.origin = cell.reading.clone();
-                value
+        if let Some(cell) = self.cell_of(name) {
+            let Cell { value, reading, input, .. } = &self.cells[cell];
+            if input.is_some() {
+                self.seen_input.clone_from(input);
             }
-            None => match self.program.resolve(self.frame().module, &name.key) {
-                Some(Symbol::Routine(_)) => {
-                    Value::unknown(format!("'{}' is a routine", name.text), name.span)
-                }
-                Some(Symbol::Ambiguous) => Value::unknown(declared_twice(&name.text), name.span),
-                _ if name.key == "errno" => Value {
-                    datum: self.errno.clone().map_or(Datum::Num(0.0), Datum::Text),
-                    type_key: "errnum".into(),
-                    origin: Origin::of(Dependence::Variable("ERRNO".into())),
-                },
-                _ => self
-                    .system_data(&name.key, name.span)
-                    .or_else(|| predefined::lookup(&name.key))
-                    .unwrap_or_else(|| {
-                        Value::constant(Datum::Signal(name.text.as_str().into()), "signal")
-                    }),
+            // The origin states the name that was read, not the origin of the stored value.
+            return Value { origin: reading.clone(), ..value.clone() };
+        }
+        match self.program.resolve(self.frame().module, &name.key) {
+            Some(Symbol::Routine(_)) => {
+                Value::unknown(format!("'{}' is a routine", name.text), name.span)
+            }
+            Some(Symbol::Ambiguous) => Value::unknown(declared_twice(&name.text), name.span),
+            _ if name.key == "errno" => Value {
+                datum: self.errno.clone().map_or(Datum::Num(0.0), Datum::Text),
+                type_key: "errnum".into(),
+                origin: Origin::of(Dependence::Variable("ERRNO".into())),
             },
+            _ => self
+                .system_data(&name.key, name.span)
+                .or_else(|| predefined::lookup(&name.key))
+                .unwrap_or_else(|| {
+                    Value::constant(Datum::Signal(name.text.as_str().into()), "signal")
+                }),
         }
     }
 
@@ -153,18 +153,13 @@ impl Executor<'_> {
             return *cell;
         }
         // Reserved before its value is evaluated, so that a circular definition ends.
-        self.cells.push(Cell {
-            value: Value::unknown("its value refers to itself", self.program.data(id).span),
-            reading: Origin::default(),
-            history: Origin::default(),
-            read_only: true,
-            input: None,
-        });
-        let cell = self.cells.len() - 1;
-        self.globals.insert(id, cell);
-        self.kept_cells = cell + 1;
         let program = self.program;
         let data = program.data(id);
+        let circular = Value::unknown("its value refers to itself", data.span);
+        let cell =
+            self.new_cell(Cell { read_only: true, ..Cell::new(circular, Origin::default()) });
+        self.globals.insert(id, cell);
+        self.kept_cells = cell + 1;
         let module = std::mem::replace(&mut self.frame_mut().module, id.module);
         // The initial value is read in the scope of its own module.
         let names = std::mem::take(&mut self.frame_mut().names);
@@ -186,13 +181,8 @@ impl Executor<'_> {
             (DataKind::Var, _) => Origin::of(Dependence::Variable(name)),
             (DataKind::Pers, _) => Origin::of(Dependence::Persistent(name)),
         };
-        self.cells[cell] = Cell {
-            value,
-            reading,
-            history: Origin::default(),
-            read_only: data.kind == DataKind::Const,
-            input: None,
-        };
+        let read_only = data.kind == DataKind::Const;
+        self.cells[cell] = Cell { read_only, ..Cell::new(value, reading) };
         cell
     }
 
@@ -285,61 +275,37 @@ impl Executor<'_> {
         let value = self.level(value);
         let history = self.history(&value.origin);
         let input = self.seen_input.take().or_else(|| self.deciding.last().cloned());
-        let mut path = Vec::new();
-        let mut base = target;
-        loop {
-            match &base.kind {
-                ExprKind::Ref(name) => {
-                    let Some(cell) = self.cell_of(name) else {
-                        let reason = match self.program.resolve(self.frame().module, &name.key) {
-                            Some(Symbol::Ambiguous) => declared_twice(&name.text),
-                            _ => format!("'{}' is not declared", name.text),
-                        };
-                        self.unresolved(name.span, reason);
-                        return;
-                    };
-                    if self.cells[cell].read_only {
-                        self.unresolved(name.span, format!("'{}' is read only", name.text));
-                        return;
-                    }
-                    path.reverse();
-                    let type_key = self.cells[cell].value.type_key.clone();
-                    let place = self.place(&type_key, &path);
-                    let slot = &mut self.cells[cell].value.datum;
-                    let changed = if let Some(indices) = place {
-                        store(slot, &indices, value.datum)
-                    } else {
-                        *slot = Datum::unknown(
-                            format!("it was written at a place in '{}' not known", name.text),
-                            target.span,
-                        );
-                        true
-                    };
-                    self.cells[cell].input = input;
-                    let kept = &mut self.cells[cell].history;
-                    if path.is_empty() {
-                        *kept = history;
-                    } else {
-                        kept.join(&history);
-                    }
-                    if changed {
-                        self.changes(Some(cell));
-                    }
-                    return;
-                }
-                ExprKind::Field(inner, name) => {
-                    path.push(Step::Field(name));
-                    base = inner;
-                }
-                ExprKind::Index(inner, indices) => {
-                    path.extend(indices.iter().rev().map(Step::Index));
-                    base = inner;
-                }
-                _ => {
-                    self.unresolved(target.span, "the left side is not data");
-                    return;
-                }
-            }
+        let Some(name) = target.base() else {
+            return self.unresolved(target.span, "the left side is not data");
+        };
+        let Some(cell) = self.cell_of(name) else {
+            let reason = match self.program.resolve(self.frame().module, &name.key) {
+                Some(Symbol::Ambiguous) => declared_twice(&name.text),
+                _ => format!("'{}' is not declared", name.text),
+            };
+            return self.unresolved(name.span, reason);
+        };
+        if self.cells[cell].read_only {
+            return self.unresolved(name.span, format!("'{}' is read only", name.text));
+        }
+        let type_key = self.cells[cell].value.type_key.clone();
+        let place = self.place(target, &type_key);
+        let slot = &mut self.cells[cell].value.datum;
+        let changed = if let Some((indices, _)) = place {
+            store(slot, &indices, value.datum)
+        } else {
+            let reason = format!("it was written at a place in '{}' not known", name.text);
+            *slot = Datum::unknown(reason, target.span);
+            true
+        };
+        self.cells[cell].input = input;
+        if matches!(target.kind, ExprKind::Ref(_)) {
+            self.cells[cell].history = history;
+        } else {
+            self.cells[cell].history.join(&history);
+        }
+        if changed {
+            self.record_change(Some(cell));
         }
     }
 
@@ -373,28 +339,26 @@ impl Executor<'_> {
         history
     }
 
-    /// The component indices of a path, outermost first.
-    fn place(&mut self, type_key: &str, path: &[Step<'_>]) -> Option<Vec<usize>> {
-        let mut key = type_key.to_owned();
-        let mut indices = Vec::with_capacity(path.len());
-        for step in path {
-            match step {
-                Step::Field(name) => {
-                    let parts = self.program.components(&key)?;
-                    let i = parts.iter().position(|(part, _)| *part == name.key)?;
-                    indices.push(i);
-                    key.clone_from(&parts[i].1);
-                }
-                Step::Index(expr) => {
-                    let i = self.eval(expr).datum.num()?.round();
-                    if i < 1.0 {
-                        return None;
-                    }
-                    indices.push(i as usize - 1);
-                }
+    /// The component indices of a part of data of this type, outermost first, and its type.
+    fn place(&mut self, target: &Expr, type_key: &str) -> Option<(Vec<usize>, String)> {
+        match &target.kind {
+            ExprKind::Field(base, name) => {
+                let (mut place, key) = self.place(base, type_key)?;
+                let parts = self.program.components(&key)?;
+                let i = parts.iter().position(|(part, _)| *part == name.key)?;
+                place.push(i);
+                Some((place, parts[i].1.clone()))
             }
+            ExprKind::Index(base, indices) => {
+                let (mut place, key) = self.place(base, type_key)?;
+                for index in indices {
+                    let i = self.eval(index).datum.num().filter(|i| i.round() >= 1.0)?;
+                    place.push(i.round() as usize - 1);
+                }
+                Some((place, key))
+            }
+            _ => Some((Vec::new(), type_key.to_owned())),
         }
-        Some(indices)
     }
 
     /// The first signal that an expression names.
@@ -404,15 +368,7 @@ impl Executor<'_> {
                 Datum::Signal(signal) => Some(signal),
                 _ => None,
             },
-            ExprKind::Unary(_, operand) => self.first_signal(operand),
-            ExprKind::Binary(_, left, right) => {
-                self.first_signal(left).or_else(|| self.first_signal(right))
-            }
-            ExprKind::Call(_, args) => args.iter().find_map(|arg| match &arg.kind {
-                crate::rapid::ir::hir::ArgKind::Positional(expr) => self.first_signal(expr),
-                _ => None,
-            }),
-            _ => None,
+            _ => expr.operands().into_iter().find_map(|operand| self.first_signal(operand)),
         }
     }
 }
@@ -420,11 +376,6 @@ impl Executor<'_> {
 /// Why a name has no meaning.
 pub(super) fn declared_twice(name: &str) -> String {
     format!("'{name}' is declared more than once")
-}
-
-enum Step<'e> {
-    Field(&'e Ident),
-    Index(&'e Expr),
 }
 
 /// Writes a part of a value; true if this changed it.

@@ -50,7 +50,15 @@ pub(super) struct Cell {
     pub(super) input: Option<Arc<str>>,
 }
 
+impl Cell {
+    /// A cell that can be written, with a value that depends on no input.
+    pub(super) fn new(value: Value, reading: Origin) -> Cell {
+        Cell { value, reading, history: Origin::default(), read_only: false, input: None }
+    }
+}
+
 /// An active routine.
+#[derive(Default)]
 pub(super) struct Frame {
     pub(super) module: usize,
     pub(super) routine: Arc<str>,
@@ -68,22 +76,6 @@ pub(super) struct Frame {
     pub(super) base: CellId,
     /// Value of [`Executor::stamp`] at the last change of its own data.
     pub(super) changed: u64,
-}
-
-impl Frame {
-    pub(super) fn new(module: usize, routine: Arc<str>, id: Option<RoutineId>) -> Frame {
-        Frame {
-            module,
-            routine,
-            called_at: None,
-            names: Vec::new(),
-            present: Vec::new(),
-            id,
-            handling: false,
-            base: 0,
-            changed: 0,
-        }
-    }
 }
 
 /// A condition on inputs, and its value.
@@ -162,6 +154,11 @@ impl<'a> Executor<'a> {
 
     pub(super) fn frame_mut(&mut self) -> &mut Frame {
         self.frames.last_mut().unwrap_or_else(|| unreachable!("execution is inside a routine"))
+    }
+
+    pub(super) fn new_cell(&mut self, cell: Cell) -> CellId {
+        self.cells.push(cell);
+        self.cells.len() - 1
     }
 
     pub(super) fn unresolved(&mut self, span: Span, reason: impl Into<String>) {

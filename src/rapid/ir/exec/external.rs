@@ -52,7 +52,7 @@ impl Executor<'_> {
                     .into(),
             ),
         };
-        self.wait(stmt, text, length, None);
+        self.wait(stmt.span, text, length, None);
     }
 }
 

@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use super::executor::{Cell, Executor, MAX_STATEMENTS, Poll};
 use super::polling::{Mark, Pass};
-use crate::rapid::ir::hir::{Block, Data, Expr, ExprKind, Ident, Stmt, StmtKind};
+use crate::rapid::ir::hir::{Block, Data, DataKind, Expr, ExprKind, Ident, Stmt, StmtKind};
 use crate::rapid::ir::value::{Dependence, Origin, Value};
+use crate::rapid::ir::walk::statements;
 use crate::rapid::text::Span;
 
 /// The note on an endless loop.
@@ -46,7 +47,7 @@ const ANY_ERROR: &str = "long_jmp_all_err";
 impl Executor<'_> {
     pub(super) fn block(&mut self, block: &Block) -> Flow {
         let mut marks = Vec::new();
-        let flow = self.statements_of(block, &mut marks);
+        let flow = self.run_statements(block, &mut marks);
         if !marks.is_empty() {
             self.unwatch();
         }
@@ -54,7 +55,7 @@ impl Executor<'_> {
     }
 
     /// Runs the statements; `marks` collects the labels that were passed.
-    fn statements_of(&mut self, block: &Block, marks: &mut Vec<(usize, Mark)>) -> Flow {
+    fn run_statements(&mut self, block: &Block, marks: &mut Vec<(usize, Mark)>) -> Flow {
         let mut index = 0;
         while let Some(stmt) = block.get(index) {
             if matches!(stmt.kind, StmtKind::Label(_)) {
@@ -68,7 +69,8 @@ impl Executor<'_> {
             };
             match find_label(block, &label) {
                 Some(at) if at < index => {
-                    if is_endless(stmt, &block[at..index - 1]) {
+                    let body = &block[at..index - 1];
+                    if matches!(stmt.kind, StmtKind::Goto(_)) && never_leaves(body) {
                         self.unresolved(stmt.span, ENDLESS);
                         continue;
                     }
@@ -83,7 +85,7 @@ impl Executor<'_> {
                         continue;
                     }
                     // The IF that led back takes its other branch; else repeat after the label.
-                    let goes_on = branches && matches!(pass, Pass::Came);
+                    let goes_on = branches && matches!(pass, Pass::InputChanged);
                     index = if goes_on { index - 1 } else { at + 1 };
                 }
                 Some(at) => index = at,
@@ -176,7 +178,7 @@ impl Executor<'_> {
             self.unresolved(at, "the program does not end: the cycle is shown up to here");
             return true;
         }
-        self.machine.is_full()
+        self.machine.is_at_limit()
     }
 
     fn attempt(&mut self, stmt: &Stmt) -> Flow {
@@ -200,10 +202,7 @@ impl Executor<'_> {
                 self.test_statement(value, cases, default.as_ref())
             }
             StmtKind::Goto(label) => Flow::Jump(label.clone(), None),
-            StmtKind::Return(value) => {
-                let value = value.as_ref().map(|expr| self.eval(expr));
-                Flow::Return(value)
-            }
+            StmtKind::Return(value) => Flow::Return(value.as_ref().map(|expr| self.eval(expr))),
             StmtKind::Raise(number) => {
                 let error = match number.as_ref().map(|number| &number.kind) {
                     Some(ExprKind::Ref(name)) => Some(name.text.to_uppercase().into()),
@@ -221,7 +220,7 @@ impl Executor<'_> {
             }
             StmtKind::Label(_) | StmtKind::Connect { .. } | StmtKind::Placeholder => Flow::Next,
             StmtKind::Broken => {
-                self.opaque(stmt.span, "the statement has a syntax error");
+                self.unknown_effect(stmt.span, "the statement has a syntax error");
                 Flow::Next
             }
         }
@@ -233,13 +232,12 @@ impl Executor<'_> {
         let history = self.history(&value.origin);
         let name = data.name.text.as_str().into();
         let reading = match data.kind {
-            crate::rapid::ir::hir::DataKind::Const => Origin::default(),
+            DataKind::Const => Origin::default(),
             _ if self.is_in_function() => Origin::of(Dependence::Inner(name)),
             _ => Origin::of(Dependence::Local(name)),
         };
-        let read_only = data.kind == crate::rapid::ir::hir::DataKind::Const;
-        self.cells.push(Cell { value, reading, history, read_only, input: None });
-        let cell = self.cells.len() - 1;
+        let read_only = data.kind == DataKind::Const;
+        let cell = self.new_cell(Cell { history, read_only, ..Cell::new(value, reading) });
         self.frame_mut().names.push((data.name.key.clone(), cell));
     }
 }
@@ -248,21 +246,19 @@ fn find_label(block: &Block, label: &Ident) -> Option<usize> {
     block.iter().position(|stmt| matches!(&stmt.kind, StmtKind::Label(l) if l.key == label.key))
 }
 
-/// Whether a `GOTO` leads back to these statements each time.
-fn is_endless(stmt: &Stmt, body: &[Stmt]) -> bool {
-    matches!(stmt.kind, StmtKind::Goto(_)) && never_leaves(body)
-}
-
 /// Whether nothing in these statements can jump out of them.
 pub(super) fn never_leaves(block: &[Stmt]) -> bool {
-    block.iter().all(|stmt| match &stmt.kind {
-        StmtKind::Goto(_)
-        | StmtKind::Return(_)
-        | StmtKind::Raise(_)
-        | StmtKind::Exit
-        | StmtKind::Broken => false,
-        kind => kind.blocks().into_iter().all(|inner| never_leaves(inner)),
-    })
+    let leaves = |stmt: &Stmt| {
+        matches!(
+            stmt.kind,
+            StmtKind::Goto(_)
+                | StmtKind::Return(_)
+                | StmtKind::Raise(_)
+                | StmtKind::Exit
+                | StmtKind::Broken
+        )
+    };
+    !statements(block).any(leaves)
 }
 
 /// A number as RAPID text that parses to the same number.

@@ -3,8 +3,9 @@
 use super::eval::declared_twice;
 use super::executor::Executor;
 use super::flow::Flow;
+use super::system::NO_AXIS;
 use crate::rapid::builtins::{self, Source};
-use crate::rapid::ir::functions::{self, Given};
+use crate::rapid::ir::functions::{self, EvaluatedArguments};
 use crate::rapid::ir::hir::{Arg, ArgKind, Expr, ExprKind, Ident};
 use crate::rapid::ir::program::Symbol;
 use crate::rapid::ir::value::{Datum, Dependence, Origin, Value};
@@ -12,21 +13,22 @@ use crate::rapid::ir::value::{Datum, Dependence, Origin, Value};
 impl Executor<'_> {
     /// The value of `name(args)`.
     pub(super) fn function(&mut self, expr: &Expr, name: &Ident, args: &[Arg]) -> Value {
-        if let Some(Symbol::Routine(id)) = self.program.resolve(self.frame().module, &name.key) {
-            return match self.call_routine(id, args, expr.span) {
-                Flow::Return(Some(value)) => value,
-                _ => Value::unknown(format!("'{}' returned no value", name.text), expr.span),
-            };
-        }
-        if self.program.resolve(self.frame().module, &name.key) == Some(Symbol::Ambiguous) {
-            return Value::unknown(declared_twice(&name.text), expr.span);
+        match self.program.resolve(self.frame().module, &name.key) {
+            Some(Symbol::Routine(id)) => {
+                return match self.call_routine(id, args, expr.span) {
+                    Flow::Return(Some(value)) => value,
+                    _ => Value::unknown(format!("'{}' returned no value", name.text), expr.span),
+                };
+            }
+            Some(Symbol::Ambiguous) => {
+                return Value::unknown(declared_twice(&name.text), expr.span);
+            }
+            _ => {}
         }
         match name.key.as_str() {
             "present" => return self.present(args),
             "cjointt" => return self.joint_position(expr),
-            "cspeedoverride" => {
-                return self.override_of_speed(args, expr);
-            }
+            "cspeedoverride" => return self.speed_override(args, expr),
             _ => {}
         }
         let source = builtins::function(&name.key).map(|function| function.source);
@@ -61,11 +63,11 @@ impl Executor<'_> {
         let Some(function) = functions::lookup(&name.key) else {
             return Value::unknown(not_known(name, source), expr.span);
         };
-        let given = Given {
+        let evaluated = EvaluatedArguments {
             args: values.iter().map(|value| &value.datum).collect(),
             options: options.iter().map(|(k, v)| (*k, v.as_ref().map(|v| &v.datum))).collect(),
         };
-        match function(&given) {
+        match function(&evaluated) {
             Some((datum, type_key)) => Value { datum, type_key: type_key.into(), origin },
             None => Value::unknown(
                 format!("'{}' has no value for these arguments", name.text),
@@ -84,26 +86,21 @@ impl Executor<'_> {
                     values.push(self.eval(inner));
                 }
                 ArgKind::Optional(option, inner) => {
-                    let value = inner.as_ref().map(|inner| self.eval(inner));
-                    options.push((&option.key, value));
+                    options.push((&option.key, inner.as_ref().map(|inner| self.eval(inner))));
                 }
-                ArgKind::Conditional(option, outer) => {
-                    if self.given(outer).is_some() {
-                        let value = self.eval(outer);
-                        options.push((&option.key, Some(value)));
-                    }
+                ArgKind::Conditional(option, outer) if self.given(outer).is_some() => {
+                    options.push((&option.key, Some(self.eval(outer))));
                 }
+                ArgKind::Conditional(..) => {}
             }
         }
         (values, options)
     }
 
     fn present(&mut self, args: &[Arg]) -> Value {
-        let given = args.first().is_some_and(|arg| match &arg.kind {
-            ArgKind::Positional(expr) => self.given(expr).is_some(),
-            _ => false,
-        });
-        Value::constant(Datum::Bool(given), "bool")
+        let parameter = args.first().and_then(Arg::positional);
+        let given = parameter.and_then(|parameter| self.given(parameter));
+        Value::constant(Datum::Bool(given.is_some()), "bool")
     }
 
     /// The name of an optional parameter, if the call of the routine states it.
@@ -118,9 +115,9 @@ impl Executor<'_> {
         let Some(q) = self.machine.joints() else {
             return Value::unknown("CJointT depends on where the robot is", expr.span);
         };
-        let joints = q.map(|x| Datum::Num(x.to_degrees())).to_vec();
+        let joints = Datum::nums(q.map(f64::to_degrees));
         Value {
-            datum: Datum::List(vec![Datum::List(joints), Datum::List(vec![Datum::Num(9e9); 6])]),
+            datum: Datum::List(vec![joints, Datum::nums([NO_AXIS; 6])]),
             type_key: "jointtarget".into(),
             origin: Origin::of(Dependence::RobotState),
         }

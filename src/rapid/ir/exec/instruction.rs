@@ -29,13 +29,13 @@ impl Executor<'_> {
             Effect::Wait(Wait::Condition) => return self.wait_until(stmt, text, &arguments),
             Effect::Wait(Wait::Operator | Wait::Outside) => {
                 if instruction.is_writing() {
-                    self.forget(args, text);
+                    self.mark_unknown(args, text);
                 }
                 // The program does not state how long.
-                self.wait(stmt, text, Length::Until(None), None);
+                self.wait(stmt.span, text, Length::Until(None), None);
             }
             Effect::Output(level) => self.output(stmt, text, level, &arguments),
-            Effect::ZoneOutput => self.zone_output(&arguments),
+            Effect::ZoneOutput => self.zone_output(instruction, &arguments),
             Effect::Count(count) => self.count(count, &arguments),
             Effect::Stop | Effect::ExitCycle => {
                 self.unresolved(stmt.span, format!("{text}: taken as passed"));
@@ -61,8 +61,8 @@ impl Executor<'_> {
             origin.any(|d| matches!(d, Dependence::TrustedPersistent(_)))
         };
         let how = format!("may be changed by {text}, which is in no file given");
-        self.forget_if(args, &how, |cell| !reads(cell));
-        self.opaque(
+        self.mark_unknown_if(args, &how, |cell| !reads(cell));
+        self.unknown_effect(
             stmt.span,
             &format!("'{text}' is neither in the program nor an instruction that is known"),
         );
@@ -72,19 +72,19 @@ impl Executor<'_> {
     fn written(&mut self, text: &str, instruction: &Instruction, args: &[Arg]) {
         let how = format!("is written by {text}");
         match instruction.written() {
-            Some(written) => self.forget_written(args, written, &how),
-            None if instruction.is_writing() => self.forget(args, &how),
+            Some(written) => self.mark_written_unknown(args, written, &how),
+            None if instruction.is_writing() => self.mark_unknown(args, &how),
             None => {}
         }
     }
 
     /// Marks all data among the arguments as unknown.
-    pub(super) fn forget(&mut self, args: &[Arg], how: &str) {
-        self.forget_if(args, how, |_| true);
+    pub(super) fn mark_unknown(&mut self, args: &[Arg], how: &str) {
+        self.mark_unknown_if(args, how, |_| true);
     }
 
     /// Marks the data of the one written argument as unknown.
-    pub(super) fn forget_written(&mut self, args: &[Arg], written: Written, how: &str) {
+    pub(super) fn mark_written_unknown(&mut self, args: &[Arg], written: Written, how: &str) {
         let by_name = |arg: &&Arg| {
             matches!(&arg.kind, ArgKind::Named(name, _)
                 if name.key.eq_ignore_ascii_case(written.name))
@@ -92,11 +92,11 @@ impl Executor<'_> {
         let positional = |arg: &&Arg| matches!(arg.kind, ArgKind::Positional(_));
         let in_place = || args.iter().filter(positional).nth(written.position);
         if let Some(arg) = args.iter().find(by_name).or_else(in_place) {
-            self.forget(std::slice::from_ref(arg), how);
+            self.mark_unknown(std::slice::from_ref(arg), how);
         }
     }
 
-    fn forget_if(&mut self, args: &[Arg], how: &str, may_change: impl Fn(&Cell) -> bool) {
+    fn mark_unknown_if(&mut self, args: &[Arg], how: &str, may_change: impl Fn(&Cell) -> bool) {
         for arg in args {
             let (ArgKind::Positional(expr)
             | ArgKind::Named(_, expr)
@@ -111,33 +111,30 @@ impl Executor<'_> {
             {
                 let reason = format!("'{}' {how}", name.text);
                 self.cells[cell].value.datum = Datum::unknown(reason, arg.span);
-                self.changes(Some(cell));
+                self.record_change(Some(cell));
             }
         }
     }
 
     fn output(&mut self, stmt: &Stmt, text: &str, level: Level, arguments: &Arguments<'_>) {
-        let Some(signal) = arguments.positional.first().and_then(|expr| self.first_signal(expr))
-        else {
-            return;
-        };
+        let signal = arguments.positional.first().and_then(|expr| self.first_signal(expr));
+        let Some(signal) = signal else { return };
         let after_pulse = (level == Level::Pulse).then_some(0.0);
         let level = match level {
             Level::High | Level::Pulse => Some(1.0),
             Level::Low => Some(0.0),
             Level::Inverse => self.signals.get(&signal.to_lowercase()).map(|x| 1.0 - x),
-            Level::Given => arguments.positional.get(1).and_then(|expr| {
-                let value = self.eval(expr);
-                self.level(value).datum.num()
-            }),
+            Level::Given => {
+                arguments.positional.get(1).and_then(|expr| self.eval_level(expr).datum.num())
+            }
         };
         if let Some(level) = after_pulse.or(level) {
             self.set_level(&signal, level);
         } else {
             self.signals.remove(&signal.to_lowercase());
-            self.changes(None);
+            self.record_change(None);
         }
-        self.machine.sets(Output {
+        self.machine.on_output(Output {
             instruction: text.into(),
             span: stmt.span,
             signal,
@@ -145,13 +142,24 @@ impl Executor<'_> {
         });
     }
 
+    /// `WZDOSet zone, shape, signal, value`: from here on the robot's position sets the signal, so
+    /// its level is unknown.
+    fn zone_output(&mut self, instruction: &Instruction, arguments: &Arguments<'_>) {
+        const SIGNAL: usize = 2;
+        self.written("WZDOSet", instruction, arguments.all);
+        let signal = arguments.positional.get(SIGNAL).and_then(|expr| self.first_signal(expr));
+        if let Some(signal) = signal
+            && self.signals.remove(&signal.to_lowercase()).is_some()
+        {
+            self.record_change(None);
+        }
+    }
+
     fn count(&mut self, count: Count, arguments: &Arguments<'_>) {
         let Some(target) = arguments.positional.first() else { return };
         let old = self.eval(target);
-        let step = match arguments.positional.get(1) {
-            Some(expr) => self.eval(expr).datum.num(),
-            None => Some(1.0),
-        };
+        let step = arguments.positional.get(1);
+        let step = step.map_or(Some(1.0), |expr| self.eval(expr).datum.num());
         let datum = match (count, old.datum.num(), step) {
             (Count::Clear, _, _) => Datum::Num(0.0),
             (Count::Up, Some(x), Some(d)) => Datum::Num(x + d),

@@ -17,10 +17,7 @@ impl Executor<'_> {
     ) -> Flow {
         let from = self.eval(from).datum.num();
         let to = self.eval(to).datum.num();
-        let step = match step {
-            Some(expr) => self.eval(expr).datum.num(),
-            None => None,
-        };
+        let step = step.and_then(|expr| self.eval(expr).datum.num());
         let (Some(from), Some(to)) = (from, to) else {
             self.unresolved(stmt.span, "the bounds of the loop are not known: it was passed over");
             return Flow::Next;
@@ -31,16 +28,11 @@ impl Executor<'_> {
             self.unresolved(stmt.span, "STEP 0: the loop was passed over");
             return Flow::Next;
         }
-        self.cells.push(Cell {
-            value: Value::constant(Datum::Num(from), "num"),
-            reading: Origin::of(Dependence::Local(var.text.as_str().into())),
-            history: Origin::default(),
-            read_only: true,
-            input: None,
-        });
-        let cell = self.cells.len() - 1;
-        self.frame_mut().names.push((var.key.clone(), cell));
+        let reading = Origin::of(Dependence::Local(var.text.as_str().into()));
+        let value = Value::constant(Datum::Num(from), "num");
+        let cell = self.new_cell(Cell { read_only: true, ..Cell::new(value, reading) });
         let depth = self.frame().names.len();
+        self.frame_mut().names.push((var.key.clone(), cell));
         let mut watched = self.watch(body);
         let mut flow = Flow::Next;
         let mut pass = 0.0;
@@ -53,12 +45,11 @@ impl Executor<'_> {
                 if pass >= f64::from(MAX_PASSES) {
                     self.unresolved(stmt.span, "the loop has too many passes; it was left here");
                 }
-                flow = if self.machine.is_full() { Flow::Exit } else { Flow::Next };
+                flow = if self.machine.is_at_limit() { Flow::Exit } else { Flow::Next };
                 break;
             }
             self.cells[cell].value = Value::constant(Datum::Num(x), "num");
-            flow = self.block(body);
-            self.frame_mut().names.truncate(depth);
+            flow = self.loop_body(body);
             if !matches!(flow, Flow::Next) {
                 break;
             }
@@ -73,7 +64,15 @@ impl Executor<'_> {
         if watched.is_some() {
             self.unwatch();
         }
-        self.frame_mut().names.truncate(depth - 1);
+        self.frame_mut().names.truncate(depth);
+        flow
+    }
+
+    /// Runs one pass; the data that it declares end with it.
+    fn loop_body(&mut self, body: &Block) -> Flow {
+        let depth = self.frame().names.len();
+        let flow = self.block(body);
+        self.frame_mut().names.truncate(depth);
         flow
     }
 
@@ -88,8 +87,8 @@ impl Executor<'_> {
 
     /// Runs the body of `WHILE TRUE`, which only a statement of the body can leave.
     fn endless(&mut self, stmt: &Stmt, body: &Block) -> Flow {
-        let passes = self.machine.passes().max(1);
-        self.machine.repeats();
+        let passes = self.machine.endless_loop_passes().max(1);
+        self.machine.on_endless_loop();
         let mut watched = self.watch(body);
         let mut flow = Flow::Next;
         let mut pass = 0;
@@ -98,15 +97,14 @@ impl Executor<'_> {
                 flow = Flow::Exit;
                 break;
             }
-            let depth = self.frame().names.len();
-            flow = self.block(body);
-            self.frame_mut().names.truncate(depth);
+            flow = self.loop_body(body);
             if !matches!(flow, Flow::Next) {
                 break;
             }
             // A pass that waited for an input and its repetition count as one.
-            let again =
-                watched.as_mut().is_some_and(|mark| matches!(self.pass_at_rest(mark), Pass::Came));
+            let again = watched
+                .as_mut()
+                .is_some_and(|mark| matches!(self.pass_at_rest(mark), Pass::InputChanged));
             pass += u32::from(!again);
         }
         if watched.is_some() {
@@ -123,7 +121,7 @@ impl Executor<'_> {
             }
             Flow::Exit => Flow::Exit,
             other => {
-                self.machine.leaves_loop();
+                self.machine.on_loop_left();
                 other
             }
         }
@@ -140,12 +138,12 @@ impl Executor<'_> {
 
     pub(super) fn while_statement(&mut self, stmt: &Stmt, condition: &Expr, body: &Block) -> Flow {
         self.watchers += 1;
-        let flow = self.passes_of_while(stmt, condition, body);
+        let flow = self.while_passes(stmt, condition, body);
         self.unwatch();
         flow
     }
 
-    fn passes_of_while(&mut self, stmt: &Stmt, condition: &Expr, body: &Block) -> Flow {
+    fn while_passes(&mut self, stmt: &Stmt, condition: &Expr, body: &Block) -> Flow {
         let mut mark = self.mark();
         for pass in 0..MAX_PASSES {
             if self.is_over(stmt.span) {
@@ -164,7 +162,7 @@ impl Executor<'_> {
                 Condition::Assumed(true) => {
                     // A loop that only polls an input is a wait for it.
                     self.wait_for("WHILE", (condition, false), None);
-                    self.flip(&Poll { condition: condition.clone(), value: true });
+                    self.invert_condition(&Poll { condition: condition.clone(), value: true });
                     self.forced = None;
                     return Flow::Next;
                 }
@@ -176,9 +174,7 @@ impl Executor<'_> {
                     return Flow::Next;
                 }
             }
-            let depth = self.frame().names.len();
-            let flow = self.block(body);
-            self.frame_mut().names.truncate(depth);
+            let flow = self.loop_body(body);
             if !matches!(flow, Flow::Next) {
                 return flow;
             }

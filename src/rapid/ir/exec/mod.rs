@@ -27,11 +27,10 @@ mod system;
 #[cfg(test)]
 mod tests;
 mod waits;
-mod world_zones;
 
 pub use constant::{evaluate, value_of};
 pub use executor::{Execution, Note};
-pub use machine::{Machine, Waited};
+pub use machine::{Machine, WaitResult};
 
 use executor::Executor;
 use flow::Flow;

@@ -1,7 +1,5 @@
 //! Motion modes of which only the default is modelled.
 
-use std::sync::Arc;
-
 use super::arguments::Arguments;
 use super::executor::Executor;
 use crate::rapid::ir::hir::{Expr, ExprKind, Stmt};
@@ -22,7 +20,7 @@ impl Executor<'_> {
         } else {
             self.unmodelled(stmt, text);
         }
-        Arc::make_mut(&mut self.settings).circle_mode = mode as u8;
+        self.settings_mut().circle_mode = mode as u8;
     }
 
     /// `PathResol`: how densely a path is interpolated; default 100 %.
@@ -33,7 +31,7 @@ impl Executor<'_> {
         } else {
             self.unmodelled(stmt, text);
         }
-        Arc::make_mut(&mut self.settings).path_resolution = percent.map(|percent| percent / 100.0);
+        self.settings_mut().path_resolution = percent.map(|percent| percent / 100.0);
     }
 
     /// `MotionProcessModeSet`: the tuning of the servo; default `OPTIMAL_CYCLE_TIME_MODE`.

@@ -29,7 +29,7 @@ const KNOWN_OPTIONS: &[&str] = &[
 
 /// The evaluated arguments of a movement.
 #[derive(Default)]
-struct Given {
+struct MovementArguments {
     origin: Origin,
     arguments: Vec<Argument>,
 }
@@ -90,14 +90,14 @@ impl Executor<'_> {
         if signature.kind == MoveKind::Search {
             let instruction = builtins::instruction(&text.to_lowercase());
             if let Some(written) = instruction.and_then(Instruction::written) {
-                self.forget_written(arguments.all, written, "is found by a search");
+                self.mark_written_unknown(arguments.all, written, "is found by a search");
             }
         }
         if let Some(what) = not_simulated(signature.kind) {
             self.unresolved(stmt.span, what);
         }
         self.moves += 1;
-        self.machine.moves(movement);
+        self.machine.on_movement(movement);
     }
 
     fn resolve(
@@ -108,57 +108,46 @@ impl Executor<'_> {
         arguments: &Arguments<'_>,
     ) -> Result<Movement, String> {
         let parts = Parts::new(text, signature, arguments)?;
-        let mut given = Given::default();
-        let via = match parts.via {
-            Some(expr) => {
-                let value = self.argument(expr, "robtarget", &mut given);
-                Some(convert::robtarget(&value.datum)?)
-            }
-            None => None,
-        };
+        let mut evaluated = MovementArguments::default();
+        let via = parts.via.map(|expr| self.argument(expr, "robtarget", &mut evaluated));
+        let via = via.map(|value| convert::robtarget(&value.datum)).transpose()?;
         let to_joints = signature.form == MoveForm::AbsJ;
         let target_type = if to_joints { "jointtarget" } else { "robtarget" };
-        let target_value = self.argument(parts.target, target_type, &mut given);
+        let target_value = self.argument(parts.target, target_type, &mut evaluated);
         let external = convert::external(&target_value.datum);
         let target = if to_joints {
             Target::Joints(convert::jointtarget(&target_value.datum)?)
         } else {
             Target::Pose(convert::robtarget(&target_value.datum)?)
         };
-        let speed_value = self.argument(parts.speed, "speeddata", &mut given);
+        let speed_value = self.argument(parts.speed, "speeddata", &mut evaluated);
         let mut speed = convert::speed(&speed_value.datum)?;
-        let zone = match parts.zone {
-            Some(expr) => {
-                let value = self.argument(expr, "zonedata", &mut given);
-                convert::zone(&value.datum)?
-            }
-            None => Zone { fine: true, tcp: 0.0, orientation: 0.0, angle: 0.0 },
-        };
-        let zone = self.zone_options(zone, arguments, &mut given)?;
-        let stop = match self.option(arguments, "inpos", "stoppointdata", &mut given) {
-            Some(value) => convert::stop(&value.datum)?,
-            None => Stop::Fine,
-        };
-        let tool = self.tool(parts.tool, &mut given)?;
+        let fine = Zone { fine: true, tcp: 0.0, orientation: 0.0, angle: 0.0 };
+        let zone = parts.zone.map(|expr| self.argument(expr, "zonedata", &mut evaluated));
+        let zone = zone.map_or(Ok(fine), |value| convert::zone(&value.datum))?;
+        let zone = self.zone_options(zone, arguments, &mut evaluated)?;
+        let stop = self.option(arguments, "inpos", "stoppointdata", &mut evaluated);
+        let stop = stop.map_or(Ok(Stop::Fine), |value| convert::stop(&value.datum))?;
+        let tool = self.tool(parts.tool, &mut evaluated)?;
         let wobj = self
-            .option(arguments, "wobj", "wobjdata", &mut given)
+            .option(arguments, "wobj", "wobjdata", &mut evaluated)
             .or_else(|| predefined::lookup("wobj0"))
             .unwrap_or_else(|| Value::unknown("wobj0", stmt.span));
         let wobj = convert::work_object(&wobj.datum)?;
-        let total_load = self.option(arguments, "tload", "loaddata", &mut given);
+        let total_load = self.option(arguments, "tload", "loaddata", &mut evaluated);
         let total_load = total_load.map(|value| convert::load(&value.datum)).transpose()?;
-        let time = self.speed_options(&mut speed, arguments, &mut given)?;
+        let time = self.speed_options(&mut speed, arguments, &mut evaluated)?;
         let other_arguments = arguments
             .optional
             .iter()
-            .filter(|(key, _, _)| !KNOWN_OPTIONS.contains(key))
-            .map(|(_, text, _)| (*text).into())
+            .filter(|(name, _)| !KNOWN_OPTIONS.contains(&name.key.as_str()))
+            .map(|(name, _)| name.text.as_str().into())
             .chain(arguments.conditional.iter().map(|text| text.as_str().into()))
             .collect();
         Ok(Movement {
             instruction: text.into(),
             form: signature.form,
-            plain: signature.plain,
+            plain: signature.kind == MoveKind::Plain,
             span: stmt.span,
             routine: self.frame().routine.clone(),
             called_at: self.frame().called_at,
@@ -176,8 +165,8 @@ impl Executor<'_> {
             settings: self.settings.clone(),
             concurrent: arguments.has_option("conc"),
             other_arguments,
-            origin: self.origin_of_movement(given.origin),
-            arguments: given.arguments,
+            origin: self.origin_of_movement(evaluated.origin),
+            arguments: evaluated.arguments,
         })
     }
 
@@ -193,13 +182,14 @@ impl Executor<'_> {
         origin
     }
 
-    fn tool(&mut self, expr: &Expr, given: &mut Given) -> Result<Tool, String> {
-        let value = self.argument(expr, "tooldata", given);
+    fn tool(&mut self, expr: &Expr, evaluated: &mut MovementArguments) -> Result<Tool, String> {
+        let value = self.argument(expr, "tooldata", evaluated);
         let name = match &expr.kind {
             ExprKind::Ref(name) => name.text.as_str(),
             _ => "tool",
         };
-        convert::tool(&value.datum, name).map_err(|why| self.blame(expr, &value.datum, &why))
+        convert::tool(&value.datum, name)
+            .map_err(|why| self.explain_argument(expr, &value.datum, &why))
     }
 
     /// Replaces the TCP speed by `\V`; returns the time `\T`, s.
@@ -207,15 +197,15 @@ impl Executor<'_> {
         &mut self,
         speed: &mut Speed,
         arguments: &Arguments<'_>,
-        given: &mut Given,
+        evaluated: &mut MovementArguments,
     ) -> Result<Option<f64>, String> {
-        if let Some(value) = self.option(arguments, "v", "num", given) {
+        if let Some(value) = self.option(arguments, "v", "num", evaluated) {
             speed.tcp = convert::num(&value.datum, "\\V")? * 1e-3;
             if speed.tcp <= 0.0 {
                 return Err("\\V is not positive".into());
             }
         }
-        let Some(value) = self.option(arguments, "t", "num", given) else { return Ok(None) };
+        let Some(value) = self.option(arguments, "t", "num", evaluated) else { return Ok(None) };
         let time = convert::num(&value.datum, "\\T")?;
         if time <= 0.0 {
             return Err("\\T is not positive".into());
@@ -225,7 +215,7 @@ impl Executor<'_> {
 
     /// Adds the name of the data to the reason why an argument is unusable. A value that is known
     /// but invalid is noted at its declaration.
-    pub(super) fn blame(&mut self, argument: &Expr, datum: &Datum, why: &str) -> String {
+    pub(super) fn explain_argument(&mut self, argument: &Expr, datum: &Datum, why: &str) -> String {
         let ExprKind::Ref(name) = &argument.kind else { return why.to_owned() };
         if datum.first_unknown().is_some() {
             return why.to_owned();
@@ -247,9 +237,9 @@ impl Executor<'_> {
         &mut self,
         mut zone: Zone,
         arguments: &Arguments<'_>,
-        given: &mut Given,
+        evaluated: &mut MovementArguments,
     ) -> Result<Zone, String> {
-        if let Some(value) = self.option(arguments, "z", "num", given) {
+        if let Some(value) = self.option(arguments, "z", "num", evaluated) {
             let size = convert::num(&value.datum, "\\Z")?.max(0.0) * 1e-3;
             // The other sizes keep their ratio to the TCP zone.
             let scale = if zone.tcp > 0.0 { size / zone.tcp } else { 1.5 };
@@ -272,15 +262,24 @@ impl Executor<'_> {
         arguments: &Arguments<'_>,
         key: &str,
         type_name: &'static str,
-        given: &mut Given,
+        evaluated: &mut MovementArguments,
     ) -> Option<Value> {
-        arguments.option_value(key).map(|expr| self.argument(expr, type_name, given))
+        arguments.option_value(key).map(|expr| self.argument(expr, type_name, evaluated))
     }
 
-    fn argument(&mut self, expr: &Expr, type_name: &'static str, given: &mut Given) -> Value {
+    fn argument(
+        &mut self,
+        expr: &Expr,
+        type_name: &'static str,
+        evaluated: &mut MovementArguments,
+    ) -> Value {
         let value = self.eval(expr);
-        given.origin.join(&value.origin);
-        given.arguments.push(Argument { span: expr.span, type_name, datum: value.datum.clone() });
+        evaluated.origin.join(&value.origin);
+        evaluated.arguments.push(Argument {
+            span: expr.span,
+            type_name,
+            datum: value.datum.clone(),
+        });
         value
     }
 }

@@ -7,12 +7,12 @@
 use std::sync::Arc;
 
 use super::executor::{CellId, Executor, MAX_CALL_DEPTH, Poll};
-use super::machine::Waited;
+use super::machine::WaitResult;
 use crate::rapid::builtins::{self, Instruction};
-use crate::rapid::ir::hir::{ArgKind, Block, Call, Callee, Expr, ExprKind, Stmt, StmtKind};
-use crate::rapid::ir::movement::Wait;
+use crate::rapid::ir::hir::{Block, Call, Callee, Expr, ExprKind, Stmt, StmtKind};
 use crate::rapid::ir::program::Symbol;
 use crate::rapid::ir::value::Datum;
+use crate::rapid::ir::walk::statements;
 
 /// Number of waits after which a loop counts as endless.
 const MAX_WAITS: u32 = 20;
@@ -46,7 +46,7 @@ pub(super) enum Pass {
     /// The input has not changed: another pass follows.
     Waiting,
     /// The last pass: the input has changed.
-    Came,
+    InputChanged,
     /// The last pass: the loop ended before the input changed.
     TimedOut,
     /// The loop does not end.
@@ -93,7 +93,7 @@ impl Executor<'_> {
         let mut coming: Option<(usize, bool)> = None;
         for (i, poll) in asked.iter().enumerate() {
             if let Some(signal) = self.deciding_signal(&poll.condition, !poll.value)
-                && let Some(come) = self.machine.has_come(&signal)
+                && let Some(come) = self.machine.input_has_changed(&signal)
                 && coming.is_none_or(|(_, before)| come && !before)
             {
                 coming = Some((i, come));
@@ -101,7 +101,7 @@ impl Executor<'_> {
         }
         let poll = asked.swap_remove(coming.map_or(0, |(i, _)| i));
         match coming {
-            Some((_, true)) => return self.comes(mark, &poll),
+            Some((_, true)) => return self.input_changed(mark, &poll),
             Some((_, false)) if moved || counts => return Pass::Waiting,
             // A counted loop with movements is work, not a wait.
             None if counts || (moved && passes_left.is_some()) => return Pass::Ordinary,
@@ -109,73 +109,43 @@ impl Executor<'_> {
         }
         let signal = self.first_signal(&poll.condition);
         if moved {
-            let (name, hint) = match &signal {
-                Some(signal) => {
-                    (signal.to_string(), format!(" (--input {signal}=SECONDS states it)"))
-                }
-                None => ("an input".to_owned(), String::new()),
-            };
-            self.unresolved(
-                poll.condition.span,
-                format!(
-                    "moves until {name} changes, at a time that is not known: taken as during \
-                     the first pass{hint}"
-                ),
+            let name = signal.as_deref().unwrap_or("an input");
+            let hint = signal.as_ref().map(|name| format!(" (--input {name}=SECONDS states it)"));
+            let reason = format!(
+                "moves until {name} changes, at a time that is not known: taken as during the \
+                 first pass{}",
+                hint.unwrap_or_default()
             );
-            return self.comes(mark, &poll);
+            self.unresolved(poll.condition.span, reason);
+            return self.input_changed(mark, &poll);
         }
-        match self.wait_for(
-            instruction,
-            (&poll.condition, !poll.value),
-            passes_left.map(|n| n * took),
-        ) {
-            Waited::Ended => self.comes(mark, &poll),
-            Waited::TimedOut => Pass::TimedOut,
+        let max_time = passes_left.map(|passes| passes * took);
+        match self.wait_for(instruction, (&poll.condition, !poll.value), max_time) {
+            WaitResult::Ended => self.input_changed(mark, &poll),
+            WaitResult::TimedOut => Pass::TimedOut,
         }
     }
 
-    /// A wait for the inputs of a condition.
-    pub(super) fn wait_for(
-        &mut self,
-        instruction: &str,
-        (condition, wanted): (&Expr, bool),
-        max_time: Option<f64>,
-    ) -> Waited {
-        let signal = self.deciding_signal(condition, wanted);
-        self.machine.waits(Wait {
-            instruction: instruction.into(),
-            span: condition.span,
-            routine: self.frame().routine.clone(),
-            duration: None,
-            constant: None,
-            max_time,
-            signal,
-            other: None,
-            grip_load: self.settings.grip_load,
-            external: None,
-        })
-    }
-
-    fn comes(&mut self, mark: &mut Mark, poll: &Poll) -> Pass {
+    fn input_changed(&mut self, mark: &mut Mark, poll: &Poll) -> Pass {
         mark.waits += 1;
         if mark.waits > MAX_WAITS {
             return Pass::Endless;
         }
-        self.flip(poll);
-        Pass::Came
+        self.invert_condition(poll);
+        Pass::InputChanged
     }
 
     /// Sets an input of the condition to a level that inverts the condition.
-    pub(super) fn flip(&mut self, poll: &Poll) {
+    pub(super) fn invert_condition(&mut self, poll: &Poll) {
         let mut signals = Vec::new();
         let mut levels = vec![1.0, 0.0];
-        self.parts(&poll.condition, &mut signals, &mut levels);
+        self.collect_signals(&poll.condition, &mut signals, &mut levels);
         for signal in signals {
             let key = signal.to_lowercase();
             let before = self.signals.get(&key).copied();
             for level in &levels {
                 self.signals.insert(key.clone(), *level);
-                if self.holds(&poll.condition) == Some(!poll.value) {
+                if self.condition_value(&poll.condition) == Some(!poll.value) {
                     return;
                 }
             }
@@ -192,7 +162,7 @@ impl Executor<'_> {
     pub(super) fn deciding_signal(&mut self, condition: &Expr, wanted: bool) -> Option<Arc<str>> {
         let first = self.first_signal(condition);
         let mut signals: Vec<Arc<str>> = Vec::new();
-        self.parts(condition, &mut signals, &mut Vec::new());
+        self.collect_signals(condition, &mut signals, &mut Vec::new());
         signals.sort_by_key(|signal| signal.to_lowercase());
         signals.dedup_by_key(|signal| signal.to_lowercase());
         if signals.len() < 2 || signals.len() > MAX_TOGETHER {
@@ -201,7 +171,7 @@ impl Executor<'_> {
         let mut coming: Vec<(f64, Arc<str>)> = Vec::new();
         for signal in signals {
             // An input without a stated time counts as changing at once.
-            let at = self.machine.comes_at(&signal).unwrap_or(f64::NEG_INFINITY);
+            let at = self.machine.input_change_time(&signal).unwrap_or(f64::NEG_INFINITY);
             coming.push((at, signal));
         }
         coming.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -224,12 +194,12 @@ impl Executor<'_> {
             for (i, (_, signal)) in coming.iter().enumerate() {
                 self.signals.insert(signal.to_lowercase(), level(i, false));
             }
-            if self.holds(condition) != Some(!wanted) {
+            if self.condition_value(condition) != Some(!wanted) {
                 continue;
             }
             for (i, (_, signal)) in coming.iter().enumerate() {
                 self.signals.insert(signal.to_lowercase(), level(i, true));
-                if self.holds(condition) == Some(wanted) {
+                if self.condition_value(condition) == Some(wanted) {
                     return Some(i);
                 }
             }
@@ -238,9 +208,8 @@ impl Executor<'_> {
     }
 
     /// The value of a condition at the current signal levels.
-    fn holds(&mut self, condition: &Expr) -> Option<bool> {
-        let value = self.eval(condition);
-        match self.level(value).datum {
+    fn condition_value(&mut self, condition: &Expr) -> Option<bool> {
+        match self.eval_level(condition).datum {
             Datum::Bool(b) => Some(b),
             Datum::Num(x) => Some(x != 0.0),
             _ => None,
@@ -248,7 +217,7 @@ impl Executor<'_> {
     }
 
     /// Collects the signals of an expression, and its numbers and their neighbours as trial levels.
-    fn parts(&mut self, expr: &Expr, signals: &mut Vec<Arc<str>>, levels: &mut Vec<f64>) {
+    fn collect_signals(&mut self, expr: &Expr, signals: &mut Vec<Arc<str>>, levels: &mut Vec<f64>) {
         match &expr.kind {
             ExprKind::Num(x) => levels.extend([*x, x + 1.0, x - 1.0]),
             ExprKind::Ref(_) => match self.eval(expr).datum {
@@ -256,19 +225,11 @@ impl Executor<'_> {
                 Datum::Num(x) => levels.extend([x, x + 1.0, x - 1.0]),
                 _ => {}
             },
-            ExprKind::Unary(_, operand) => self.parts(operand, signals, levels),
-            ExprKind::Binary(_, left, right) => {
-                self.parts(left, signals, levels);
-                self.parts(right, signals, levels);
-            }
-            ExprKind::Call(_, args) => {
-                for arg in args {
-                    if let ArgKind::Positional(expr) = &arg.kind {
-                        self.parts(expr, signals, levels);
-                    }
+            _ => {
+                for operand in expr.operands() {
+                    self.collect_signals(operand, signals, levels);
                 }
             }
-            _ => {}
         }
     }
 
@@ -278,9 +239,9 @@ impl Executor<'_> {
     }
 
     fn block_moves(&self, module: usize, block: &[Stmt], depth: usize) -> bool {
-        block.iter().any(|stmt| match &stmt.kind {
+        statements(block).any(|stmt| match &stmt.kind {
             StmtKind::Call(call) => self.call_moves(module, call, depth),
-            kind => kind.blocks().into_iter().any(|inner| self.block_moves(module, inner, depth)),
+            _ => false,
         })
     }
 
@@ -296,7 +257,7 @@ impl Executor<'_> {
     }
 
     /// Records a change of the data in a cell, or of a signal.
-    pub(super) fn changes(&mut self, cell: Option<CellId>) {
+    pub(super) fn record_change(&mut self, cell: Option<CellId>) {
         self.stamp += 1;
         let stamp = self.stamp;
         let frame = self.frame_mut();
@@ -313,7 +274,7 @@ impl Executor<'_> {
     /// Gives a signal a level.
     pub(super) fn set_level(&mut self, signal: &str, level: f64) {
         if self.signals.insert(signal.to_lowercase(), level) != Some(level) {
-            self.changes(None);
+            self.record_change(None);
         }
     }
 }

@@ -52,87 +52,87 @@ impl Executor<'_> {
             | Setting::PDispOff
             | Setting::PDispSet
             | Setting::SpeedRefresh
-            | Setting::VelSet => self.set(stmt, text, setting, arguments),
+            | Setting::VelSet => self.apply_setting(stmt, text, setting, arguments),
         }
     }
 
     /// Applies a setting that consists of the values of its arguments.
-    fn set(&mut self, stmt: &Stmt, text: &str, setting: Setting, arguments: &Arguments<'_>) {
+    fn apply_setting(
+        &mut self,
+        stmt: &Stmt,
+        text: &str,
+        setting: Setting,
+        arguments: &Arguments<'_>,
+    ) {
         let mut values = Vec::new();
         for expr in &arguments.positional {
-            let value = self.eval(expr);
-            values.push(self.level(value));
+            values.push(self.eval_level(expr));
         }
-        let mut settings = Settings::clone(&self.settings);
-        settings.other.retain(|name| !name.eq_ignore_ascii_case(text));
-        match self.change(setting, &values, arguments, &mut settings) {
-            Ok(()) => {}
-            Err(NotSet::Unknown) => {
-                settings.other.push(text.into());
-                self.not_known(stmt, text);
-            }
-            Err(NotSet::Refused(what)) => {
-                self.refused(stmt, text, &what);
-                return;
-            }
+        match self.change_setting(setting, &values, arguments) {
+            Ok(()) => self.clear_unmodelled(&[&text.to_lowercase()]),
+            Err(NotSet::Unknown) => self.not_known(stmt, text),
+            Err(NotSet::Refused(what)) => self.refused(stmt, text, &what),
             Err(NotSet::StopsMovements) => {
                 let reason = format!("{text} 0 stops all movements: taken as if it were not there");
                 self.unresolved(stmt.span, reason);
-                return;
             }
         }
-        self.settings = Arc::new(settings);
     }
 
-    fn change(
+    fn change_setting(
         &mut self,
         setting: Setting,
         values: &[Value],
         arguments: &Arguments<'_>,
-        settings: &mut Settings,
     ) -> Result<(), NotSet> {
         let num = |i: usize| values.get(i).and_then(|v| v.datum.num()).ok_or(NotSet::Unknown);
+        let first = || values.first().map(|value| &value.datum).ok_or(NotSet::Unknown);
         let on = arguments.has_option("on");
         match setting {
-            Setting::VelSet => set_speed(settings, num(0)?, num(1)?)?,
+            Setting::VelSet => set_speed(self.settings_mut(), num(0)?, num(1)?)?,
             Setting::AccSet => {
                 let (acceleration, ramp) = (num(0)?, num(1)?);
                 let fine = arguments.option_value("finepointramp");
                 let fine = fine.and_then(|expr| self.eval(expr).datum.num());
+                let settings = self.settings_mut();
                 // The controller raises lower values to 20 % and 10 %.
                 settings.fine_point_ramp = fine.unwrap_or(100.0).clamp(10.0, 100.0) / 100.0;
                 settings.acceleration = acceleration.clamp(20.0, 100.0) / 100.0;
                 settings.ramp = ramp.clamp(10.0, 100.0) / 100.0;
             }
             Setting::SpeedRefresh => match num(0)? {
-                percent if percent > 0.0 && percent <= 100.0 => settings.refresh = percent / 100.0,
+                percent if percent > 0.0 && percent <= 100.0 => {
+                    self.settings_mut().refresh = percent / 100.0;
+                }
                 0.0 => return Err(NotSet::StopsMovements),
                 percent => return Err(NotSet::Refused(format!("{percent} % of the speed"))),
             },
-            Setting::ConfJ => settings.conf_joint = on,
-            Setting::ConfL => settings.conf_linear = on,
+            Setting::ConfJ => self.settings_mut().conf_joint = on,
+            Setting::ConfL => self.settings_mut().conf_linear = on,
             Setting::GripLoad => {
-                let value = values.first().ok_or(NotSet::Unknown)?;
-                match convert::load(&value.datum) {
-                    Ok(load) => settings.grip_load = Some(load),
-                    Err(why) => {
-                        self.blame(arguments.positional[0], &value.datum, &why);
-                        return Err(NotSet::Unknown);
-                    }
-                }
-                settings.grip_load_data = Some(value.datum.clone());
+                let datum = first()?;
+                let load = convert::load(datum).map_err(|why| {
+                    self.explain_argument(arguments.positional[0], datum, &why);
+                    NotSet::Unknown
+                })?;
+                let settings = self.settings_mut();
+                settings.grip_load = Some(load);
+                settings.grip_load_data = Some(datum.clone());
             }
             Setting::PDispSet => {
-                let value = values.first().ok_or(NotSet::Unknown)?;
-                let pose = convert::pose(&value.datum, "the displacement");
-                settings.displacement = Some(pose.map_err(|_| NotSet::Unknown)?);
+                let pose = convert::pose(first()?, "the displacement");
+                self.settings_mut().displacement = Some(pose.map_err(|_| NotSet::Unknown)?);
             }
             _ => {
-                settings.displacement = None;
-                settings.other.retain(|name| !name.eq_ignore_ascii_case("PDispOn"));
+                self.settings_mut().displacement = None;
+                self.clear_unmodelled(&["pdispon"]);
             }
         }
         Ok(())
+    }
+
+    pub(super) fn settings_mut(&mut self) -> &mut Settings {
+        Arc::make_mut(&mut self.settings)
     }
 
     /// Reports a value at which the controller stops with an error.
@@ -148,16 +148,17 @@ impl Executor<'_> {
     }
 
     fn not_known(&mut self, stmt: &Stmt, text: &str) {
+        self.mark_unmodelled(text);
         let reason = format!("{text} with a value that is not known: simulated as before it");
         self.unresolved(stmt.span, reason);
     }
 
     fn sing_area(&mut self, text: &str, arguments: &Arguments<'_>) {
-        Arc::make_mut(&mut self.settings).sing_area = arguments
+        self.settings_mut().sing_area = arguments
             .optional
             .iter()
-            .find(|(key, _, _)| *key != "off")
-            .map(|(_, option, _)| format!("{text}\\{option}").into());
+            .find(|(name, _)| name.key != "off")
+            .map(|(name, _)| format!("{text}\\{}", name.text).into());
     }
 
     /// `PathAccLim AccLim [\AccMax], DecelLim [\DecelMax]`.
@@ -171,7 +172,7 @@ impl Executor<'_> {
                 Datum::Bool(true) => {
                     let value = arguments.option_value(option);
                     match value.and_then(|expr| self.eval(expr).datum.num()) {
-                        Some(limit) => limits[i] = self.least(stmt, text, limit),
+                        Some(limit) => limits[i] = self.raised_to_least(stmt, text, limit),
                         None => known = false,
                     }
                 }
@@ -180,15 +181,14 @@ impl Executor<'_> {
         }
         if known {
             self.clear_unmodelled(&["pathacclim"]);
-            Arc::make_mut(&mut self.settings).path_acceleration = limits;
+            self.settings_mut().path_acceleration = limits;
         } else {
-            self.mark_unmodelled(text);
             self.not_known(stmt, text);
         }
     }
 
     /// An acceleration limit, raised to [`LEAST_ACCELERATION`] if it is smaller.
-    fn least(&mut self, stmt: &Stmt, text: &str, limit: f64) -> f64 {
+    fn raised_to_least(&mut self, stmt: &Stmt, text: &str, limit: f64) -> f64 {
         if limit < LEAST_ACCELERATION {
             let reason = format!(
                 "{text} with {limit} m/s², less than the controller takes: simulated with \
@@ -204,14 +204,11 @@ impl Executor<'_> {
         let on = arguments.option_value("on").map(|expr| self.eval(expr).datum.num());
         let limit = match on {
             None if arguments.has_option("off") => f64::INFINITY,
-            Some(Some(limit)) => self.least(stmt, text, limit),
-            _ => {
-                self.mark_unmodelled(text);
-                return self.not_known(stmt, text);
-            }
+            Some(Some(limit)) => self.raised_to_least(stmt, text, limit),
+            _ => return self.not_known(stmt, text),
         };
         self.clear_unmodelled(&["worldacclim"]);
-        Arc::make_mut(&mut self.settings).world_acceleration = limit;
+        self.settings_mut().world_acceleration = limit;
     }
 
     /// Records a setting whose effect on movements is not modelled.
@@ -224,15 +221,15 @@ impl Executor<'_> {
     }
 
     /// Adds an instruction to those whose effect is not modelled, as the last one.
-    fn mark_unmodelled(&mut self, text: &str) {
+    pub(super) fn mark_unmodelled(&mut self, text: &str) {
         self.clear_unmodelled(&[&text.to_lowercase()]);
-        Arc::make_mut(&mut self.settings).other.push(text.into());
+        self.settings_mut().other.push(text.into());
     }
 
     /// Removes instructions (lower case) from those whose effect is not modelled.
     pub(super) fn clear_unmodelled(&mut self, keys: &[&str]) {
-        let settings = Arc::make_mut(&mut self.settings);
-        settings.other.retain(|name| !keys.contains(&name.to_lowercase().as_str()));
+        let other = &mut self.settings_mut().other;
+        other.retain(|name| !keys.contains(&name.to_lowercase().as_str()));
     }
 }
 

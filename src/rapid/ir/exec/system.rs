@@ -11,7 +11,7 @@ use crate::rapid::text::Span;
 /// TCP speed limit in `C_MOTSET` before the first `VelSet`, mm/s.
 const USUAL_SPEED: f64 = 5000.0;
 /// RAPID's value of an axis that does not exist.
-const NO_AXIS: f64 = 9e9;
+pub(super) const NO_AXIS: f64 = 9e9;
 /// Value of a limit that is off.
 const OFF: f64 = -1.0;
 
@@ -41,10 +41,8 @@ impl Executor<'_> {
         let area = settings.sing_area.as_deref().unwrap_or_default().to_lowercase();
         let sing = ["\\wrist", "\\lockaxis4", "\\arm", "\\base"];
         let limit = |limit: f64| {
-            [
-                Datum::Bool(limit.is_finite()),
-                Datum::Num(if limit.is_finite() { limit } else { OFF }),
-            ]
+            let is_on = limit.is_finite();
+            [Datum::Bool(is_on), Datum::Num(if is_on { limit } else { OFF })]
         };
         let [along, back] = settings.path_acceleration.map(limit);
         let on = Datum::Bool(true);
@@ -71,7 +69,7 @@ impl Executor<'_> {
     }
 
     /// `CSpeedOverride()`: the operator's override; with `\\CTask` the value of `SpeedRefresh`.
-    pub(super) fn override_of_speed(&self, args: &[Arg], expr: &Expr) -> Value {
+    pub(super) fn speed_override(&self, args: &[Arg], expr: &Expr) -> Value {
         let asks = |arg: &Arg| matches!(&arg.kind, ArgKind::Optional(n, _) if n.key == "ctask");
         let percent = if !args.iter().any(asks) {
             self.machine.override_percent()
@@ -86,7 +84,7 @@ impl Executor<'_> {
     /// `GetSysInfo(\\RobotType)`: the robot type that the controller reports.
     pub(super) fn system_info(&self, options: &[(&str, Option<Value>)], expr: &Expr) -> Value {
         let asked = options.first().map_or("", |(option, _)| *option);
-        match self.machine.robot().filter(|_| asked == "robottype") {
+        match self.machine.robot_type().filter(|_| asked == "robottype") {
             Some(name) => Value::constant(Datum::Text(name.into()), "string"),
             None => Value::unknown("GetSysInfo depends on the controller", expr.span),
         }
@@ -99,8 +97,7 @@ impl Executor<'_> {
         options: &[(&str, Option<Value>)],
         expr: &Expr,
     ) -> Value {
-        let found = self.pose_at(values, options);
-        match found {
+        match self.pose_at(values, options) {
             Ok(at) => {
                 let [trans, rot] = convert::pose_parts(&at);
                 let (conf, external) = (Datum::nums([0.0; 4]), Datum::nums([NO_AXIS; 6]));
@@ -122,10 +119,8 @@ impl Executor<'_> {
         let [joints, tool, ..] = values else { return Err("CalcRobT has no tool".into()) };
         let tool = convert::tool(&tool.datum, "tool")?;
         let wobj = options.iter().find(|(option, _)| *option == "wobj");
-        let wobj = match wobj.and_then(|(_, value)| value.as_ref()) {
-            Some(value) => Some(convert::work_object(&value.datum)?),
-            None => None,
-        };
+        let wobj = wobj.and_then(|(_, value)| value.as_ref());
+        let wobj = wobj.map(|value| convert::work_object(&value.datum)).transpose()?;
         if !tool.robhold || wobj.as_ref().is_some_and(|wobj| wobj.robhold || !wobj.fixed) {
             return Err("CalcRobT of a tool or work object that is held otherwise".into());
         }

@@ -11,7 +11,7 @@ use crate::rapid::text::FileId;
 struct Recorder(Vec<String>);
 
 impl Machine for Recorder {
-    fn moves(&mut self, movement: Result<Movement, Unresolved>) {
+    fn on_movement(&mut self, movement: Result<Movement, Unresolved>) {
         self.0.push(match movement {
             Ok(movement) => {
                 let place = match &movement.target {
@@ -27,19 +27,13 @@ impl Machine for Recorder {
             Err(unresolved) => format!("{} ({})", unresolved.reason, unresolved.moves),
         });
     }
-    fn waits(&mut self, wait: Wait) -> Waited {
+    fn on_wait(&mut self, wait: Wait) -> WaitResult {
         self.0.push(format!("{} {:?}", wait.instruction, wait.duration));
         // Every wait with a limit times out.
-        if wait.max_time.is_some() { Waited::TimedOut } else { Waited::Ended }
+        if wait.max_time.is_some() { WaitResult::TimedOut } else { WaitResult::Ended }
     }
-    fn sets(&mut self, output: Output) {
+    fn on_output(&mut self, output: Output) {
         self.0.push(format!("{} {}={}", output.instruction, output.signal, output.value));
-    }
-    fn joints(&mut self) -> Option<[f64; 6]> {
-        None
-    }
-    fn is_full(&self) -> bool {
-        false
     }
 }
 
@@ -55,13 +49,8 @@ const DATA: &str = "
     VAR num nKey;";
 
 /// The events of these statements.
-fn told(statements: &str) -> Vec<String> {
-    told_with_errors(statements, 0)
-}
-
-/// The events of statements with this number of syntax errors.
-fn told_with_errors(statements: &str, errors: usize) -> Vec<String> {
-    executed(statements, errors).0
+fn events(statements: &str) -> Vec<String> {
+    executed(statements, 0).0
 }
 
 /// The events of statements with this number of syntax errors, and the unresolved reasons.
@@ -76,7 +65,7 @@ fn executed(statements: &str, errors: usize) -> (Vec<String>, Vec<String>) {
 }
 
 #[test]
-fn every_family_of_movements_is_resolved() {
+fn movements_of_every_family_are_resolved() {
     let target = "p10, v100, z10, tool0";
     for statement in [
         format!("MoveJ {target};"),
@@ -98,17 +87,17 @@ fn every_family_of_movements_is_resolved() {
         "CapL p10, v100, cd1, ws1, we1, fine, tool0;".to_owned(),
         "MoveL Tool:=tool0, ToPoint:=p10, Speed:=v100, Zone:=z10;".to_owned(),
     ] {
-        let told = told(&statement);
-        assert!(told.len() == 1 && told[0].ends_with(" 100.0"), "{statement}: {told:?}");
+        let events = events(&statement);
+        assert!(events.len() == 1 && events[0].ends_with(" 100.0"), "{statement}: {events:?}");
     }
-    assert_eq!(told("MoveAbsJ j10 \\NoEOffs, v100 \\T:=2, fine, tool0;"), ["MoveAbsJ 30.0"]);
+    assert_eq!(events("MoveAbsJ j10 \\NoEOffs, v100 \\T:=2, fine, tool0;"), ["MoveAbsJ 30.0"]);
 }
 
 /// Of all movements only a search writes a target, and only the point that it finds.
 #[test]
-fn what_does_more_than_move_leaves_its_target_alone() {
+fn only_searches_write_a_target() {
     let behind = |statement: &str| {
-        told(&format!(
+        events(&format!(
             "pVar:=p20; pFound:=p20; {statement}; MoveL pVar, v100, fine, tool0; \
              MoveL pFound, v100, fine, tool0;"
         ))
@@ -133,16 +122,16 @@ fn what_does_more_than_move_leaves_its_target_alone() {
 
 /// World zones cause no movement and write only the zone or the shape.
 #[test]
-fn world_zones_leave_targets_and_signals_as_they_should() {
+fn world_zones_write_only_their_zone_shape_and_signal() {
     let statements = "pVar:=p20; jVar:=j10; SetDO doHome, 1;
         WZHomeJointDef \\Inside, shHome, jVar, jVar; WZLimJointDef \\Outside, shHome, jVar, jVar;
         WZBoxDef \\Inside, shBox, pVar.trans, pVar.trans; WZCylDef \\Inside, shBox, pVar.trans, 9, 9;
         WZSphDef \\Inside, shBox, pVar.trans, 9; WZLimSup \\Stat, wzBox, shBox;
         WZDisable wzTemp; WZEnable wzTemp; WZFree wzTemp;
         MoveL pVar, v100, fine, tool0; MoveAbsJ jVar, v100, fine, tool0;";
-    assert_eq!(told(statements), ["SetDO doHome=1", "MoveL 150.0", "MoveAbsJ 30.0"]);
+    assert_eq!(events(statements), ["SetDO doHome=1", "MoveL 150.0", "MoveAbsJ 30.0"]);
     // From then on the output depends on the position of the robot.
-    let inverted = |zone: &str| told(&format!("SetDO doHome, 1; {zone} InvertDO doHome;"));
+    let inverted = |zone: &str| events(&format!("SetDO doHome, 1; {zone} InvertDO doHome;"));
     assert_eq!(inverted("")[1], "InvertDO doHome=0");
     assert_eq!(
         inverted("WZDOSet \\Stat, wzHome \\Inside, shHome, doHome, 1;")[1],
@@ -152,21 +141,21 @@ fn world_zones_leave_targets_and_signals_as_they_should() {
 
 #[test]
 fn a_statement_with_an_error_may_move_the_robot() {
-    let told = told_with_errors("MoveJ p10, v100 fine, tool0;\nMoveJ p20, v100, fine, tool0;", 1);
-    assert_eq!(told, ["the statement has a syntax error (true)", "MoveJ 150.0"]);
+    let (events, _) = executed("MoveJ p10, v100 fine, tool0;\nMoveJ p20, v100, fine, tool0;", 1);
+    assert_eq!(events, ["the statement has a syntax error (true)", "MoveJ 150.0"]);
 }
 
 #[test]
-fn external_axes_leave_the_robot_where_it_stands() {
+fn movements_of_external_axes_are_waits() {
     // A wait of unknown length until the position of the axes is known.
-    assert_eq!(told("MoveExtJ j10, vrot10, fine;"), ["MoveExtJ None"]);
-    assert_eq!(told("SearchExtJ diTouch, j10, j10, vrot10;"), ["SearchExtJ None"]);
-    assert_eq!(told("MoveExtJ j10, vrot10 \\T:=2, fine;"), ["MoveExtJ Some(2.0)"]);
+    assert_eq!(events("MoveExtJ j10, vrot10, fine;"), ["MoveExtJ None"]);
+    assert_eq!(events("SearchExtJ diTouch, j10, j10, vrot10;"), ["SearchExtJ None"]);
+    assert_eq!(events("MoveExtJ j10, vrot10 \\T:=2, fine;"), ["MoveExtJ Some(2.0)"]);
 }
 
 #[test]
-fn displacements_are_worked_out_from_two_points() {
-    let moved = |on: &str| told(&format!("{on}; MoveJ p10, v100, fine, tool0; PDispOff;"));
+fn displacements_follow_from_two_points() {
+    let moved = |on: &str| events(&format!("{on}; MoveJ p10, v100, fine, tool0; PDispOff;"));
     assert_eq!(moved("PDispOn \\ExeP:=p20, p10, tool0"), ["MoveJ 150.0"]);
     assert_eq!(moved("PDispOn \\Rot \\ExeP:=pTurned, p20, tool0"), ["MoveJ 200.0"]);
     assert_eq!(moved("PDispOn p10, tool0"), ["MoveJ 100.0 PDispOn"]);
@@ -174,23 +163,23 @@ fn displacements_are_worked_out_from_two_points() {
 }
 
 #[test]
-fn waits_for_others_are_waits() {
+fn waits_for_operators_and_tasks_have_no_stated_time() {
     for wait in
         ["WaitSyncTask sync1, taskList", "TPReadFK nKey, \"x\", \"\", \"\", \"\", \"\", \"a\""]
     {
         let name = wait.split(' ').next().expect("a name");
-        assert_eq!(told(&format!("{wait};")), [format!("{name} None")]);
+        assert_eq!(events(&format!("{wait};")), [format!("{name} None")]);
     }
-    assert_eq!(told("WaitTime \\InPos, 0.5;"), ["WaitTime Some(0.5)"]);
+    assert_eq!(events("WaitTime \\InPos, 0.5;"), ["WaitTime Some(0.5)"]);
     assert_eq!(
-        told("nKey:=1; TPReadFK nKey, \"\", \"\", \"\", \"\", \"\", \"\"; WaitTime nKey;").len(),
+        events("nKey:=1; TPReadFK nKey, \"\", \"\", \"\", \"\", \"\", \"\"; WaitTime nKey;").len(),
         2
     );
 }
 
 /// Data assigned in a branch on an input, taken or not, depend on the input.
 #[test]
-fn branches_on_data_that_inputs_chose_are_told() {
+fn skipped_branches_on_inputs_are_reported() {
     let later = "IF nKey=1 THEN\nMoveJ p10, v100, fine, tool0;\nENDIF";
     for first in [
         "IF diX=1 THEN\nnKey:=1;\nENDIF",
@@ -200,11 +189,11 @@ fn branches_on_data_that_inputs_chose_are_told() {
         "TEST giX\nCASE 1:\nnKey:=1;\nENDTEST",
         "TEST giX\nCASE 0:\nnKey:=2;\nENDTEST",
     ] {
-        let (told, notes) = executed(&format!("{first}\n{later}"), 0);
-        assert!(told.is_empty(), "{first}: {told:?}");
-        let is_told =
+        let (events, notes) = executed(&format!("{first}\n{later}"), 0);
+        assert!(events.is_empty(), "{first}: {events:?}");
+        let is_reported =
             notes.iter().any(|note| note.contains("taken as FALSE") && note.contains("X=LEVEL"));
-        assert!(is_told, "{first}: {notes:?}");
+        assert!(is_reported, "{first}: {notes:?}");
     }
     let (_, notes) = executed(&format!("IF diX=1 THEN\nnKey:=1;\nENDIF\nnKey:=2;\n{later}"), 0);
     assert!(notes.is_empty(), "{notes:?}");

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use super::arguments::Arguments;
 use super::executor::Executor;
 use super::flow::{Flow, Raised, number_text};
-use super::machine::Waited;
+use super::machine::WaitResult;
 use crate::rapid::builtins::{self, MoveForm};
 use crate::rapid::ir::hir::{BinaryOp, Expr, ExprKind, Stmt};
 use crate::rapid::ir::movement::Wait;
-use crate::rapid::ir::value::{Datum, Dependence, Value};
+use crate::rapid::ir::value::{Datum, Value};
 use crate::rapid::text::Span;
 
 /// How long a wait lasts.
@@ -49,7 +49,7 @@ impl Executor<'_> {
             }
             _ => Length::Unknown("a time that is not known".into()),
         };
-        self.wait(stmt, text, length, None);
+        self.wait(stmt.span, text, length, None);
     }
 
     pub(super) fn wait_signal(
@@ -61,9 +61,7 @@ impl Executor<'_> {
         let signal = arguments.positional.first().and_then(|expr| self.first_signal(expr));
         let flow = self.wait_at_most(stmt, text, Length::Until(signal.clone()), arguments);
         if let (Ok(()), Some(signal), Some(value)) = (&flow, signal, arguments.positional.get(1)) {
-            let value = self.eval(value);
-            let level = self.level(value);
-            if let Some(level) = level.datum.num() {
+            if let Some(level) = self.eval_level(value).datum.num() {
                 self.set_level(&signal, level);
             }
         }
@@ -86,8 +84,8 @@ impl Executor<'_> {
             }
             time.map(|time| time.max(0.0))
         });
-        let waited = self.wait(stmt, text, length, max_time);
-        let timed_out = waited == Waited::TimedOut;
+        let waited = self.wait(stmt.span, text, length, max_time);
+        let timed_out = waited == WaitResult::TimedOut;
         if let Some(flag) = arguments.option_value("timeflag") {
             self.seen_input = None;
             self.assign(flag, Value::constant(Datum::Bool(timed_out), "bool"));
@@ -114,10 +112,8 @@ impl Executor<'_> {
         let condition = arguments.positional.first().copied();
         let signal = condition.and_then(|expr| self.deciding_signal(expr, true));
         if let Some(condition) = condition {
-            let value = self.eval(condition);
-            let value = self.level(value);
-            let input = value.origin.iter().any(|d| matches!(d, Dependence::Input(_)));
-            if value.datum == Datum::Bool(true) && !input {
+            let value = self.eval_level(condition);
+            if value.datum == Datum::Bool(true) && !value.origin.has_input() {
                 let flow = self.wait_at_most(stmt, text, Length::Stated(0.0), arguments);
                 return flow.err().unwrap_or(Flow::Next);
             }
@@ -126,17 +122,17 @@ impl Executor<'_> {
             return flow;
         }
         if let Some(condition) = condition {
-            self.learn(condition);
+            self.set_awaited_levels(condition);
         }
         Flow::Next
     }
 
     /// Sets the signals to the levels that the condition of the finished wait requires.
-    fn learn(&mut self, condition: &Expr) {
+    fn set_awaited_levels(&mut self, condition: &Expr) {
         match &condition.kind {
             ExprKind::Binary(BinaryOp::And, left, right) => {
-                self.learn(left);
-                self.learn(right);
+                self.set_awaited_levels(left);
+                self.set_awaited_levels(right);
             }
             ExprKind::Binary(BinaryOp::Eq, left, right) => {
                 for (a, b) in [(left, right), (right, left)] {
@@ -152,13 +148,24 @@ impl Executor<'_> {
         }
     }
 
+    /// A wait for the inputs of a condition.
+    pub(super) fn wait_for(
+        &mut self,
+        instruction: &str,
+        (condition, wanted): (&Expr, bool),
+        max_time: Option<f64>,
+    ) -> WaitResult {
+        let signal = self.deciding_signal(condition, wanted);
+        self.wait(condition.span, instruction, Length::Until(signal), max_time)
+    }
+
     pub(super) fn wait(
         &mut self,
-        stmt: &Stmt,
+        span: Span,
         text: &str,
         length: Length,
         max_time: Option<f64>,
-    ) -> Waited {
+    ) -> WaitResult {
         let routine = self.frame().routine.clone();
         let constant = match length {
             Length::Constant(_, argument) => Some(argument),
@@ -176,9 +183,9 @@ impl Executor<'_> {
             .is_some_and(|signature| signature.form == MoveForm::ExternalJoint);
         let external = self.external_axes.as_deref().filter(|_| moves);
         let external = external.and_then(|axes| axes.try_into().ok());
-        self.machine.waits(Wait {
+        self.machine.on_wait(Wait {
             instruction: text.into(),
-            span: stmt.span,
+            span,
             routine,
             duration,
             constant,

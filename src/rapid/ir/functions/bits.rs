@@ -1,6 +1,6 @@
 //! Bit functions: 8 bits for `byte`, 52 for `dnum`.
 
-use super::given::{Function, Given, Typed, boolean};
+use super::arguments::{EvaluatedArguments, Function, TypedDatum, boolean};
 use crate::rapid::ir::value::Datum;
 
 /// The function of a name in lower case.
@@ -31,20 +31,20 @@ const fn mask(width: u32) -> u64 {
     (1 << width) - 1
 }
 
-fn bits(given: &Given<'_>, index: usize) -> Option<u64> {
-    let x = given.num(index)?;
+fn bits(arguments: &EvaluatedArguments<'_>, index: usize) -> Option<u64> {
+    let x = arguments.num(index)?;
     (x >= 0.0 && x <= mask(52) as f64 && x.fract() == 0.0).then_some(x as u64)
 }
 
-fn shifted_left(given: &Given<'_>) -> Option<u64> {
-    bits(given, 0)?.checked_shl(bits(given, 1)? as u32)
+fn shifted_left(arguments: &EvaluatedArguments<'_>) -> Option<u64> {
+    bits(arguments, 0)?.checked_shl(bits(arguments, 1)? as u32)
 }
 
-fn two(given: &Given<'_>, f: fn(u64, u64) -> u64) -> Option<Typed> {
-    Some(number(f(bits(given, 0)?, bits(given, 1)?), 52))
+fn two(arguments: &EvaluatedArguments<'_>, f: fn(u64, u64) -> u64) -> Option<TypedDatum> {
+    Some(number(f(bits(arguments, 0)?, bits(arguments, 1)?), 52))
 }
 
-fn number(bits: u64, width: u32) -> Typed {
+fn number(bits: u64, width: u32) -> TypedDatum {
     let type_key = if width == 8 { "byte" } else { "num" };
     (Datum::Num(bits as f64), type_key)
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, Matrix3, Point3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
-use super::given::{Function, Given, Typed, num};
+use super::arguments::{EvaluatedArguments, Function, TypedDatum, num};
 use crate::rapid::ir::convert;
 use crate::rapid::ir::value::Datum;
 
@@ -53,24 +53,24 @@ pub(in crate::rapid::ir) fn product(left: &Datum, right: &Datum) -> Option<Datum
     Some(Datum::nums([q.w, q.i, q.j, q.k]))
 }
 
-fn pose(given: &Given<'_>, index: usize) -> Option<Isometry3<f64>> {
-    convert::pose(given.args.get(index)?, "the pose").ok()
+fn pose(arguments: &EvaluatedArguments<'_>, index: usize) -> Option<Isometry3<f64>> {
+    convert::pose(arguments.args.get(index)?, "the pose").ok()
 }
 
-fn orient(rotation: &UnitQuaternion<f64>) -> Typed {
+fn orient(rotation: &UnitQuaternion<f64>) -> TypedDatum {
     (Datum::nums([rotation.w, rotation.i, rotation.j, rotation.k]), "orient")
 }
 
 /// The first argument as a normalised orientation.
-fn direction(given: &Given<'_>) -> Option<UnitQuaternion<f64>> {
-    let [w, x, y, z] = convert::nums::<4>(given.args.first()?, "the orientation").ok()?;
+fn direction(arguments: &EvaluatedArguments<'_>) -> Option<UnitQuaternion<f64>> {
+    let [w, x, y, z] = convert::nums::<4>(arguments.args.first()?, "the orientation").ok()?;
     UnitQuaternion::try_new(Quaternion::new(w, x, y, z), f64::EPSILON)
 }
 
 /// `EulerZYX(\X | \Y | \Z, orient)`
-fn euler_zyx(given: &Given<'_>) -> Option<Typed> {
-    let (x, y, z) = direction(given)?.euler_angles();
-    let angle = match given.options.first()?.0 {
+fn euler_zyx(arguments: &EvaluatedArguments<'_>) -> Option<TypedDatum> {
+    let (x, y, z) = direction(arguments)?.euler_angles();
+    let angle = match arguments.options.first()?.0 {
         "x" => x,
         "y" => y,
         "z" => z,
@@ -81,14 +81,14 @@ fn euler_zyx(given: &Given<'_>) -> Option<Typed> {
 
 /// `DefFrame(p1, p2, p3 \Origin)`: x from p1 to p2, p3 at positive y. The origin is p1, with
 /// `\Origin:=2` p2, with `\Origin:=3` the projection of p3 on the x axis.
-fn define_frame(given: &Given<'_>) -> Option<Typed> {
-    let [p1, p2, p3] = [point(given, 0)?, point(given, 1)?, point(given, 2)?];
+fn define_frame(arguments: &EvaluatedArguments<'_>) -> Option<TypedDatum> {
+    let [p1, p2, p3] = [point(arguments, 0)?, point(arguments, 1)?, point(arguments, 2)?];
     let x = (p2 - p1).try_normalize(SHORTEST)?;
     let along = p1 + x * x.dot(&(p3 - p1));
     let y = (p3 - along).try_normalize(SHORTEST)?;
     let axes = Matrix3::from_columns(&[x, y, x.cross(&y)]);
     let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes));
-    let origin = match given.option("origin", 1.0)? as u32 {
+    let origin = match arguments.option("origin", 1.0)? as u32 {
         1 => p1,
         2 => p2,
         3 => along,
@@ -99,7 +99,7 @@ fn define_frame(given: &Given<'_>) -> Option<Typed> {
 }
 
 /// The position of a robtarget, mm.
-fn point(given: &Given<'_>, index: usize) -> Option<Vector3<f64>> {
-    let Datum::List(parts) = given.args.get(index)? else { return None };
+fn point(arguments: &EvaluatedArguments<'_>, index: usize) -> Option<Vector3<f64>> {
+    let Datum::List(parts) = arguments.args.get(index)? else { return None };
     convert::nums::<3>(parts.first()?, "the target").ok().map(Vector3::from)
 }

@@ -2,15 +2,15 @@
 //!
 //! Names and values: function reference of `RobotWare` 6. Angles are in degrees, lengths in mm.
 
+mod arguments;
 mod bits;
 mod geometry;
-mod given;
 mod number;
 mod text;
 
+pub(super) use arguments::EvaluatedArguments;
+use arguments::Function;
 pub(super) use geometry::product;
-use given::Function;
-pub(super) use given::Given;
 
 /// The function of a name in lower case.
 pub(super) fn lookup(name: &str) -> Option<Function> {
@@ -26,7 +26,7 @@ mod tests {
     use crate::rapid::builtins::{FUNCTIONS, Source};
 
     #[test]
-    fn what_the_table_calls_calculated_is_calculated() {
+    fn calculated_functions_are_implemented() {
         for entry in FUNCTIONS {
             let is_calculated = lookup(&entry.name.to_lowercase()).is_some();
             assert_eq!(is_calculated, entry.source == Source::Arguments, "{}", entry.name);

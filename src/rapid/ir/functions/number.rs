@@ -1,6 +1,6 @@
 //! Functions of numbers and vectors that return a number.
 
-use super::given::{Function, Given, Typed, num};
+use super::arguments::{EvaluatedArguments, Function, TypedDatum, num};
 use crate::rapid::ir::value::Datum;
 
 /// The function of a name in lower case; a function of `dnum` equals that of `num`.
@@ -31,15 +31,15 @@ pub(super) fn lookup(name: &str) -> Option<Function> {
 }
 
 /// `Round` and `Trunc` with `\Dec`.
-fn decimals(given: &Given<'_>, step: fn(f64) -> f64) -> Option<Typed> {
-    let scale = 10_f64.powf(given.option("dec", 0.0)?);
-    num(step(given.num(0)? * scale) / scale)
+fn decimals(arguments: &EvaluatedArguments<'_>, step: fn(f64) -> f64) -> Option<TypedDatum> {
+    let scale = 10_f64.powf(arguments.option("dec", 0.0)?);
+    num(step(arguments.num(0)? * scale) / scale)
 }
 
 /// `Dim(array, n)`: size of the n-th dimension.
-fn dimension(given: &Given<'_>) -> Option<Typed> {
-    let mut datum = *given.args.first()?;
-    for _ in 1..given.num(1)? as usize {
+fn dimension(arguments: &EvaluatedArguments<'_>) -> Option<TypedDatum> {
+    let mut datum = *arguments.args.first()?;
+    for _ in 1..arguments.num(1)? as usize {
         let Datum::List(items) = datum else { return None };
         datum = items.first()?;
     }

@@ -1,6 +1,6 @@
 //! Functions of strings. Positions count from 1.
 
-use super::given::{Function, Given, Typed, boolean, num};
+use super::arguments::{EvaluatedArguments, Function, TypedDatum, boolean, num};
 use crate::rapid::ir::value::Datum;
 
 /// Significant digits of a `num` as text.
@@ -54,19 +54,22 @@ pub(super) fn lookup(name: &str) -> Option<Function> {
     Some(function)
 }
 
-fn string(text: String) -> Typed {
+fn string(text: String) -> TypedDatum {
     (Datum::Text(text.into()), "string")
 }
 
 /// The second argument, a position in the string, converted to count from 0.
-fn start(given: &Given<'_>) -> Option<usize> {
-    given.num(1).filter(|at| *at >= 1.0).map(|at| at as usize - 1)
+fn start(arguments: &EvaluatedArguments<'_>) -> Option<usize> {
+    arguments.num(1).filter(|at| *at >= 1.0).map(|at| at as usize - 1)
 }
 
 /// The first position that fits, from the second argument on; else the one after the string.
-fn position(given: &Given<'_>, fits: impl Fn(&[char]) -> bool) -> Option<Typed> {
-    let text: Vec<char> = given.text(0)?.chars().collect();
-    let from = start(given)?;
+fn position(
+    arguments: &EvaluatedArguments<'_>,
+    fits: impl Fn(&[char]) -> bool,
+) -> Option<TypedDatum> {
+    let text: Vec<char> = arguments.text(0)?.chars().collect();
+    let from = start(arguments)?;
     let at = (from..text.len()).find(|at| fits(&text[*at..])).unwrap_or(text.len());
     num(at as f64 + 1.0)
 }
@@ -111,9 +114,9 @@ fn significant(x: f64) -> String {
 }
 
 /// `ByteToStr(122 \Hex)`
-fn byte_to_string(given: &Given<'_>) -> Option<Typed> {
-    let byte = given.num(0).filter(|x| (0.0..256.0).contains(x))? as u8;
-    Some(string(match given.options.first().map(|(name, _)| *name) {
+fn byte_to_string(arguments: &EvaluatedArguments<'_>) -> Option<TypedDatum> {
+    let byte = arguments.num(0).filter(|x| (0.0..256.0).contains(x))? as u8;
+    Some(string(match arguments.options.first().map(|(name, _)| *name) {
         None => format!("{byte}"),
         Some("hex") => format!("{byte:02X}"),
         Some("okt") => format!("{byte:03o}"),
@@ -124,9 +127,9 @@ fn byte_to_string(given: &Given<'_>) -> Option<Typed> {
 }
 
 /// `StrToByte("7A" \Hex)`
-fn string_to_byte(given: &Given<'_>) -> Option<Typed> {
-    let text = given.text(0)?;
-    let radix = match given.options.first().map(|(name, _)| *name) {
+fn string_to_byte(arguments: &EvaluatedArguments<'_>) -> Option<TypedDatum> {
+    let text = arguments.text(0)?;
+    let radix = match arguments.options.first().map(|(name, _)| *name) {
         None => 10,
         Some("hex") => 16,
         Some("okt") => 8,

@@ -1,8 +1,8 @@
 //! Expressions and arguments.
 
-use super::{Lowering, exact};
+use super::{Lowering, exact, has_own_error};
 use crate::rapid::ir::hir::{Arg, ArgKind, BinaryOp, Expr, ExprKind, UnaryOp};
-use crate::rapid::syntax::{Node, NodeKind, TokenKind, ast};
+use crate::rapid::syntax::{Node, NodeKind, TokenKind};
 
 impl Lowering<'_> {
     pub(super) fn broken(&self, node: Node<'_>) -> Expr {
@@ -11,75 +11,70 @@ impl Lowering<'_> {
 
     /// An expression. The depth of the recursion is limited by the parser.
     pub(super) fn expr(&self, node: Node<'_>) -> Expr {
-        if node.children().any(|child| child.kind() == NodeKind::Error) {
-            return self.broken(node);
-        }
-        let mut children = node.children();
-        let kind = match node.kind() {
-            // Parentheses form no node of their own, but the span includes them.
-            NodeKind::Parenthesized => children.next().map(|inner| self.expr(inner).kind),
-            NodeKind::NumberLiteral => number(node.text(self.bytes)).map(ExprKind::Num),
-            NodeKind::StringLiteral => Some(ExprKind::Str(self.string(node))),
-            NodeKind::BoolLiteral => {
-                Some(ExprKind::Bool(node.text(self.bytes).eq_ignore_ascii_case(b"TRUE")))
-            }
-            NodeKind::Reference => Some(ExprKind::Ref(self.ident(node))),
-            NodeKind::FieldAccess => children
-                .next()
-                .zip(children.next())
-                .map(|(base, name)| ExprKind::Field(Box::new(self.expr(base)), self.ident(name))),
-            NodeKind::IndexAccess => children.next().map(|base| {
-                let base = Box::new(self.expr(base));
-                ExprKind::Index(base, children.map(|index| self.expr(index)).collect())
-            }),
-            NodeKind::FunctionCall => children.next().map(|name| {
-                let count = node.children().count() - 1;
-                let args = exact(children, count, |argument| self.arg(argument));
-                ExprKind::Call(self.ident(name), args)
-            }),
-            NodeKind::Aggregate => {
-                let count = node.children().count();
-                Some(ExprKind::Aggregate(exact(children, count, |part| self.expr(part))))
-            }
-            NodeKind::UnaryExpression => unary_op(node)
-                .zip(children.next())
-                .map(|(op, operand)| ExprKind::Unary(op, Box::new(self.expr(operand)))),
-            NodeKind::BinaryExpression => {
-                match (binary_op(node), children.next(), children.next()) {
-                    (Some(op), Some(left), Some(right)) => Some(ExprKind::Binary(
-                        op,
-                        Box::new(self.expr(left)),
-                        Box::new(self.expr(right)),
-                    )),
-                    _ => None,
-                }
-            }
-            NodeKind::AnyPosition => Some(ExprKind::AnyPosition),
-            NodeKind::Placeholder => Some(ExprKind::Placeholder),
-            _ => None,
-        };
+        let kind = if has_own_error(node) { None } else { self.expr_kind(node) };
         Expr { kind: kind.unwrap_or(ExprKind::Broken), span: self.span(node) }
     }
 
+    fn expr_kind(&self, node: Node<'_>) -> Option<ExprKind> {
+        let mut children = node.children();
+        Some(match node.kind() {
+            // Parentheses form no node of their own, but the span includes them.
+            NodeKind::Parenthesized => self.expr(children.next()?).kind,
+            NodeKind::NumberLiteral => ExprKind::Num(number(node.text(self.bytes))?),
+            NodeKind::StringLiteral => ExprKind::Str(self.string(node)),
+            NodeKind::BoolLiteral => {
+                ExprKind::Bool(node.text(self.bytes).eq_ignore_ascii_case(b"TRUE"))
+            }
+            NodeKind::Reference => ExprKind::Ref(self.ident(node)),
+            NodeKind::FieldAccess => {
+                let (base, name) = (children.next()?, children.next()?);
+                ExprKind::Field(Box::new(self.expr(base)), self.ident(name))
+            }
+            NodeKind::IndexAccess => {
+                let base = Box::new(self.expr(children.next()?));
+                ExprKind::Index(base, children.map(|index| self.expr(index)).collect())
+            }
+            NodeKind::FunctionCall => {
+                let name = self.ident(children.next()?);
+                let count = node.children().count() - 1;
+                ExprKind::Call(name, exact(children, count, |argument| self.arg(argument)))
+            }
+            NodeKind::Aggregate => {
+                let count = node.children().count();
+                ExprKind::Aggregate(exact(children, count, |part| self.expr(part)))
+            }
+            NodeKind::UnaryExpression => {
+                ExprKind::Unary(unary_op(node)?, Box::new(self.expr(children.next()?)))
+            }
+            NodeKind::BinaryExpression => {
+                let (op, left, right) = (binary_op(node)?, children.next()?, children.next()?);
+                ExprKind::Binary(op, Box::new(self.expr(left)), Box::new(self.expr(right)))
+            }
+            NodeKind::AnyPosition => ExprKind::AnyPosition,
+            NodeKind::Placeholder => ExprKind::Placeholder,
+            _ => return None,
+        })
+    }
+
     pub(super) fn arg(&self, node: Node<'_>) -> Arg {
-        let span = self.span(node);
-        let Some(argument) = ast::Argument::cast(node) else {
-            return Arg { kind: ArgKind::Positional(self.expr(node)), span };
-        };
-        let name = self.ident_in(argument.name(), node);
-        let kind = match (node.kind(), argument.value()) {
-            (NodeKind::OptionalArgument, value) => {
-                ArgKind::Optional(name, value.map(|value| self.expr(value)))
+        let name = || self.name_of(node);
+        let value = node.children().nth(1);
+        let kind = match node.kind() {
+            NodeKind::OptionalArgument => {
+                ArgKind::Optional(name(), value.map(|value| self.expr(value)))
             }
-            (NodeKind::ConditionalArgument, parameter) => {
-                let outer = self.ident_in(parameter, node);
+            NodeKind::ConditionalArgument => {
+                let outer = self.ident_or_empty(value, node);
                 let span = outer.span;
-                ArgKind::Conditional(name, Expr { kind: ExprKind::Ref(outer), span })
+                ArgKind::Conditional(name(), Expr { kind: ExprKind::Ref(outer), span })
             }
-            (_, Some(value)) => ArgKind::Named(name, self.expr(value)),
-            (_, None) => ArgKind::Named(name, self.broken(node)),
+            NodeKind::NamedArgument => {
+                let value = value.map_or_else(|| self.broken(node), |value| self.expr(value));
+                ArgKind::Named(name(), value)
+            }
+            _ => ArgKind::Positional(self.expr(node)),
         };
-        Arg { kind, span }
+        Arg { kind, span: self.span(node) }
     }
 
     /// The text of a string, escapes resolved.

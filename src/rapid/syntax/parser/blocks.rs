@@ -1,6 +1,6 @@
 //! Recovery from missing, misspelt or superfluous block keywords.
 
-use super::recovery::{closes_block, closes_routine, ends_block};
+use super::recovery::{closes_block, closes_routine, ends_block, opens_routine};
 use super::{Open, Parser, SplitIf, excerpt};
 use crate::rapid::syntax::node::NodeKind;
 use crate::rapid::syntax::token::TokenKind;
@@ -163,22 +163,28 @@ impl Parser<'_> {
             self.error_at(position, message);
         }
         let branches = match kind {
-            TokenKind::Else | TokenKind::ElseIf => self.deeper(|parser| {
-                parser.open(TokenKind::EndIf, position);
-                parser.else_branches();
-                parser.close_stray(TokenKind::EndIf);
-            }),
-            TokenKind::Case | TokenKind::Default => self.deeper(|parser| {
-                parser.open(TokenKind::EndTest, position);
-                parser.cases();
-                parser.close_stray(TokenKind::EndTest);
-            }),
+            TokenKind::Else | TokenKind::ElseIf => {
+                self.stray_branches(TokenKind::EndIf, Self::else_branches)
+            }
+            TokenKind::Case | TokenKind::Default => {
+                self.stray_branches(TokenKind::EndTest, Self::cases)
+            }
             _ => None,
         };
         if branches.is_none() {
             self.bump();
         }
         self.finish(mark, NodeKind::Error);
+    }
+
+    /// Reads branches without the beginning of their statement.
+    fn stray_branches(&mut self, closer: TokenKind, read: fn(&mut Self)) -> Option<()> {
+        let position = self.position;
+        self.deeper(|parser| {
+            parser.open(closer, position);
+            read(parser);
+            parser.close_stray(closer);
+        })
     }
 
     /// At a superfluous keyword: if it is aligned with a compact IF over two lines, reports the
@@ -264,15 +270,8 @@ impl Parser<'_> {
         loop {
             let kind = self.current();
             match kind {
-                TokenKind::EndOfFile
-                | TokenKind::Proc
-                | TokenKind::Func
-                | TokenKind::Trap
-                | TokenKind::Module
-                | TokenKind::EndModule
-                | TokenKind::EndProc
-                | TokenKind::EndFunc
-                | TokenKind::EndTrap => break,
+                TokenKind::EndOfFile | TokenKind::Module | TokenKind::EndModule => break,
+                _ if opens_routine(kind) || closes_routine(kind) => break,
                 TokenKind::For | TokenKind::While | TokenKind::Test => open += 1,
                 TokenKind::If => after_if = true,
                 TokenKind::ElseIf => after_if = false,

@@ -10,9 +10,7 @@ impl Parser<'_> {
     /// `[LOCAL|TASK] (VAR|PERS|CONST) type name {dims} := value;`
     pub(super) fn data_declaration(&mut self) {
         let mark = self.mark();
-        if matches!(self.current(), TokenKind::Local | TokenKind::Task) {
-            self.bump();
-        }
+        self.eat_scope();
         let keyword = self.position;
         let constant = self.at(TokenKind::Const);
         if matches!(self.current(), TokenKind::Var | TokenKind::Pers | TokenKind::Const) {
@@ -25,22 +23,30 @@ impl Parser<'_> {
             self.name();
         }
         if self.at(TokenKind::LeftBrace) {
-            self.dimensions();
+            self.expression_list(NodeKind::Dimensions, TokenKind::RightBrace, "',' or '}'");
         }
-        let mut expected = "an operator or ';'";
-        if self.eat(TokenKind::Assign) {
-            self.expression();
-        } else if !self.quiet && self.at(TokenKind::Equal) {
-            self.wrong_token(TokenKind::Assign);
-            self.expression();
+        if self.assigned_value() {
+            self.end_statement("an operator or ';'");
         } else {
             if constant && !self.quiet {
                 self.tolerate(Tolerance::ConstWithoutValue, keyword);
             }
-            expected = "':=' or ';'";
+            self.end_statement("':=' or ';'");
         }
-        self.end_statement(expected);
         self.finish(mark, NodeKind::DataDeclaration);
+    }
+
+    /// `:= value`, and `= value` with an error; false if neither is here.
+    pub(super) fn assigned_value(&mut self) -> bool {
+        let wrong = !self.quiet && self.at(TokenKind::Equal);
+        if wrong {
+            self.wrong_token(TokenKind::Assign);
+        }
+        let assigned = wrong || self.eat(TokenKind::Assign);
+        if assigned {
+            self.expression();
+        }
+        assigned
     }
 
     /// Reports that another token is expected here, and reads past the current one.
@@ -60,13 +66,13 @@ impl Parser<'_> {
         }
     }
 
-    /// `{2, 3}`
-    fn dimensions(&mut self) {
+    /// `{2, 3}`, `(ERR_A, ERR_B)`
+    pub(super) fn expression_list(&mut self, kind: NodeKind, closer: TokenKind, expected: &str) {
         let mark = self.mark();
         self.bump();
         self.expressions();
-        self.close_bracket(TokenKind::RightBrace, "',' or '}'");
-        self.finish(mark, NodeKind::Dimensions);
+        self.close_bracket(closer, expected);
+        self.finish(mark, kind);
     }
 
     /// `RECORD name {type component;} ENDRECORD`

@@ -72,12 +72,10 @@ impl Parser<'_> {
     /// Reads an expression of one token (the most frequent case), if the next token confirms it.
     fn lone_operand(&mut self) -> bool {
         let kind = match self.current() {
-            TokenKind::Number => NodeKind::NumberLiteral,
-            TokenKind::String => NodeKind::StringLiteral,
-            TokenKind::True | TokenKind::False => NodeKind::BoolLiteral,
-            TokenKind::Identifier => NodeKind::Reference,
-            _ => return false,
+            TokenKind::Identifier => Some(NodeKind::Reference),
+            current => literal(current),
         };
+        let Some(kind) = kind else { return false };
         let alone = matches!(
             self.tokens.kind(self.position + 1),
             TokenKind::Comma
@@ -169,22 +167,18 @@ impl Parser<'_> {
     }
 
     fn primary(&mut self, expected: &str) -> Height {
+        if let Some(kind) = literal(self.current()) {
+            self.leaf(kind);
+            return 1;
+        }
         match self.current() {
-            TokenKind::Number => self.leaf(NodeKind::NumberLiteral),
-            TokenKind::String => self.leaf(NodeKind::StringLiteral),
-            TokenKind::True | TokenKind::False => self.leaf(NodeKind::BoolLiteral),
             TokenKind::Placeholder => return self.variable(),
             TokenKind::UnclosedString => {
                 let message = "expected '\"' at the end of this string".to_owned();
                 self.error_at(self.position, message);
                 self.leaf(NodeKind::Error);
             }
-            TokenKind::LeftParen => {
-                return self.bracketed(NodeKind::Parenthesized, TokenKind::RightParen);
-            }
-            TokenKind::LeftBracket => {
-                return self.bracketed(NodeKind::Aggregate, TokenKind::RightBracket);
-            }
+            TokenKind::LeftParen | TokenKind::LeftBracket => return self.bracketed(),
             TokenKind::Identifier => return self.variable_or_call(),
             _ => {
                 self.error_expected(expected);
@@ -195,21 +189,20 @@ impl Parser<'_> {
     }
 
     /// `(a)`, `[a, b]`
-    fn bracketed(&mut self, kind: NodeKind, closer: TokenKind) -> Height {
+    fn bracketed(&mut self) -> Height {
         let mark = self.mark();
+        let is_list = self.at(TokenKind::LeftBracket);
         let height = self.deeper(|parser| {
             parser.bump();
-            let below = if kind == NodeKind::Aggregate {
-                parser.expressions()
+            if is_list {
+                let below = parser.expressions();
+                parser.close_bracket(TokenKind::RightBracket, "',' or ']'");
+                parser.taller(mark, NodeKind::Aggregate, below)
             } else {
-                parser.expression()
-            };
-            let expected = match kind {
-                NodeKind::Aggregate => "',' or ']'",
-                _ => "an operator or ')'",
-            };
-            parser.close_bracket(closer, expected);
-            parser.taller(mark, kind, below)
+                let below = parser.expression();
+                parser.close_bracket(TokenKind::RightParen, "an operator or ')'");
+                parser.taller(mark, NodeKind::Parenthesized, below)
+            }
         });
         height.unwrap_or_else(|| self.missing_operand())
     }
@@ -279,5 +272,14 @@ impl Parser<'_> {
             }
         }
         height
+    }
+}
+
+fn literal(kind: TokenKind) -> Option<NodeKind> {
+    match kind {
+        TokenKind::Number => Some(NodeKind::NumberLiteral),
+        TokenKind::String => Some(NodeKind::StringLiteral),
+        TokenKind::True | TokenKind::False => Some(NodeKind::BoolLiteral),
+        _ => None,
     }
 }

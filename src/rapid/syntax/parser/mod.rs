@@ -215,6 +215,23 @@ impl<'a> Parser<'a> {
         self.builder.finish(mark, kind, self.end);
     }
 
+    /// Adds an error node for the tokens since `start`; false if there are none.
+    fn finish_skipped(&mut self, mark: Mark, start: usize) -> bool {
+        let skipped = self.position > start;
+        if skipped {
+            self.finish(mark, NodeKind::Error);
+        }
+        skipped
+    }
+
+    /// At the end of a round of a loop: the round must have read something.
+    fn ensure_progress(&mut self, before: usize) {
+        debug_assert!(self.position > before, "every round reads something");
+        if self.position == before {
+            self.leaf(NodeKind::Error);
+        }
+    }
+
     /// Adds a node for the current token.
     fn leaf(&mut self, kind: NodeKind) {
         let mark = self.mark();

@@ -2,7 +2,7 @@
 
 use super::Parser;
 use super::blocks::is_near;
-use super::recovery::{closes_routine, ends_block, starts_data, starts_statement};
+use super::recovery::{closes_routine, ends_block, opens_routine, starts_data, starts_statement};
 use crate::rapid::syntax::node::NodeKind;
 use crate::rapid::syntax::token::TokenKind;
 use crate::rapid::syntax::tolerance::Tolerance;
@@ -33,11 +33,7 @@ struct Skipped {
     value: bool,
 }
 
-impl Progress {
-    fn new() -> Progress {
-        Progress { part: Part::Types, orphaned: false }
-    }
-}
+const START: Progress = Progress { part: Part::Types, orphaned: false };
 
 impl Parser<'_> {
     pub(super) fn file(&mut self) {
@@ -69,10 +65,7 @@ impl Parser<'_> {
                 }
                 _ => self.outside_text(has_rapid),
             }
-            debug_assert!(self.position > before, "every round reads something");
-            if self.position == before {
-                self.leaf(NodeKind::Error);
-            }
+            self.ensure_progress(before);
         }
         self.builder.finish(mark, NodeKind::File, self.tokens.count());
     }
@@ -137,38 +130,34 @@ impl Parser<'_> {
 
     /// Whether a declaration starts here; the tokens after it distinguish it from prose.
     fn at_declaration(&mut self) -> bool {
-        let next = match self.current() {
-            TokenKind::Var | TokenKind::Pers | TokenKind::Const => {
-                let after = self.after(self.position);
-                let name = self.after(after);
-                return (self.tokens.kind(after) == TokenKind::Identifier)
-                    && (self.tokens.kind(name) == TokenKind::Identifier);
-            }
+        let opens =
+            |kind| opens_routine(kind) || matches!(kind, TokenKind::Record | TokenKind::Alias);
+        match self.current() {
+            TokenKind::Var | TokenKind::Pers | TokenKind::Const => self.two_names_follow(),
             TokenKind::Local | TokenKind::Task => {
-                return starts_data(self.next())
-                    || matches!(
-                        self.next(),
-                        TokenKind::Proc
-                            | TokenKind::Func
-                            | TokenKind::Trap
-                            | TokenKind::Record
-                            | TokenKind::Alias
-                    );
+                let next = self.next();
+                starts_data(next) || opens(next)
             }
-            TokenKind::Proc
-            | TokenKind::Func
-            | TokenKind::Trap
-            | TokenKind::Record
-            | TokenKind::Alias => self.next(),
-            _ => return false,
-        };
-        self.first_on_line(self.position) && (next == TokenKind::Identifier)
+            kind => {
+                opens(kind)
+                    && self.next() == TokenKind::Identifier
+                    && self.first_on_line(self.position)
+            }
+        }
+    }
+
+    /// Whether two names follow the current token: type and name of data.
+    pub(super) fn two_names_follow(&mut self) -> bool {
+        let first = self.after(self.position);
+        let second = self.after(first);
+        self.tokens.kind(first) == TokenKind::Identifier
+            && self.tokens.kind(second) == TokenKind::Identifier
     }
 
     /// Declarations without a module around them.
     fn bare_declarations(&mut self) {
         self.tolerate(Tolerance::DeclarationOutsideModule, self.position);
-        let mut progress = Progress::new();
+        let mut progress = START;
         while self.at_declaration() {
             let before = self.position;
             self.quiet = false;
@@ -215,7 +204,7 @@ impl Parser<'_> {
         if self.quiet {
             self.rest_of_header();
         }
-        let mut progress = Progress::new();
+        let mut progress = START;
         loop {
             let before = self.position;
             self.quiet = false;
@@ -225,10 +214,7 @@ impl Parser<'_> {
                 TokenKind::Identifier if self.misspelt_closer() > 0 => break,
                 _ => self.item(&mut progress),
             }
-            debug_assert!(self.position > before, "every round reads something");
-            if self.position == before {
-                self.leaf(NodeKind::Error);
-            }
+            self.ensure_progress(before);
         }
         self.close();
         self.finish(mark, NodeKind::Module);
@@ -280,18 +266,14 @@ impl Parser<'_> {
         let scoped = matches!(self.current(), TokenKind::Local | TokenKind::Task);
         let kind = if scoped { self.next() } else { self.current() };
         match kind {
-            TokenKind::Proc | TokenKind::Func | TokenKind::Trap => {
+            _ if opens_routine(kind) => {
                 progress.orphaned = false;
                 self.in_order(progress, Part::Routines, start);
                 self.routine(kind);
             }
-            TokenKind::Record => {
+            TokenKind::Record | TokenKind::Alias => {
                 self.in_order(progress, Part::Types, start);
-                self.record();
-            }
-            TokenKind::Alias => {
-                self.in_order(progress, Part::Types, start);
-                self.alias();
+                if kind == TokenKind::Record { self.record() } else { self.alias() }
             }
             TokenKind::Semicolon if !scoped => {
                 self.tolerate(Tolerance::EmptyStatement, start);
@@ -400,9 +382,7 @@ impl Parser<'_> {
             skipped.value |= kind == TokenKind::Assign;
             self.bump();
         }
-        if self.position > start {
-            self.finish(mark, NodeKind::Error);
-        }
+        self.finish_skipped(mark, start);
         skipped
     }
 }

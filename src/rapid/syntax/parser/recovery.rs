@@ -101,9 +101,7 @@ impl Parser<'_> {
                 _ => self.bump(),
             }
         }
-        if self.position > start {
-            self.finish(mark, NodeKind::Error);
-        }
+        self.finish_skipped(mark, start);
     }
 
     /// After a keyword: reports and skips a repetition of it.
@@ -137,8 +135,7 @@ impl Parser<'_> {
     /// The end of a simple statement or declaration: its `;`, or recovery.
     pub(super) fn end_statement(&mut self, expected: &str) {
         if self.at(TokenKind::Semicolon) && self.quiet {
-            self.recover();
-            return;
+            return self.recover();
         }
         if self.eat(TokenKind::Semicolon) {
             return;
@@ -188,11 +185,14 @@ impl Parser<'_> {
                 break;
             }
         }
-        if self.position > start {
-            self.finish(mark, NodeKind::Error);
-        }
+        self.finish_skipped(mark, start);
         ended
     }
+}
+
+/// Keywords at which a routine starts.
+pub(super) fn opens_routine(kind: TokenKind) -> bool {
+    matches!(kind, TokenKind::Proc | TokenKind::Func | TokenKind::Trap)
 }
 
 pub(super) fn closes_routine(kind: TokenKind) -> bool {
@@ -211,6 +211,7 @@ pub(super) fn closes_block(kind: TokenKind) -> bool {
 /// Keywords at which a block of statements ends.
 pub(super) fn ends_block(kind: TokenKind) -> bool {
     closes_block(kind)
+        || opens_routine(kind)
         || matches!(
             kind,
             TokenKind::Else
@@ -219,9 +220,6 @@ pub(super) fn ends_block(kind: TokenKind) -> bool {
                 | TokenKind::Default
                 | TokenKind::EndModule
                 | TokenKind::EndRecord
-                | TokenKind::Proc
-                | TokenKind::Func
-                | TokenKind::Trap
                 | TokenKind::Module
                 | TokenKind::Error
                 | TokenKind::Undo

@@ -90,9 +90,7 @@ impl Parser<'_> {
                 break;
             }
         }
-        if self.position > start {
-            self.finish(mark, NodeKind::Error);
-        } else {
+        if !self.finish_skipped(mark, start) {
             self.rest_of_header();
         }
     }
@@ -104,9 +102,7 @@ impl Parser<'_> {
         while !self.first_on_line(self.position) && !ends_block(self.current()) {
             self.bump();
         }
-        if self.position > start {
-            self.finish(mark, NodeKind::Error);
-        }
+        self.finish_skipped(mark, start);
     }
 
     /// `(num a, \num b | num c, VAR num d{*})`
@@ -179,14 +175,9 @@ impl Parser<'_> {
 
     /// Whether a parameter with the mode `REF`, which is not a keyword, starts here.
     fn at_reference_mode(&mut self) -> bool {
-        if !self.at(TokenKind::Identifier) || !self.text(self.position).eq_ignore_ascii_case(b"REF")
-        {
-            return false;
-        }
-        let after = self.after(self.position);
-        let name = self.after(after);
-        self.tokens.kind(after) == TokenKind::Identifier
-            && self.tokens.kind(name) == TokenKind::Identifier
+        self.at(TokenKind::Identifier)
+            && self.text(self.position).eq_ignore_ascii_case(b"REF")
+            && self.two_names_follow()
     }
 
     /// `{*, *}`; `{2, 3}` is tolerated.
@@ -234,7 +225,7 @@ impl Parser<'_> {
             let mark = self.mark();
             self.bump();
             if kind == TokenKind::Error && self.at(TokenKind::LeftParen) {
-                self.error_numbers();
+                self.expression_list(NodeKind::ErrorNumbers, TokenKind::RightParen, "',' or ')'");
                 if self.quiet {
                     self.rest_of_header();
                 }
@@ -249,14 +240,5 @@ impl Parser<'_> {
                 },
             );
         }
-    }
-
-    /// `(ERR_A, ERR_B)`
-    fn error_numbers(&mut self) {
-        let mark = self.mark();
-        self.bump();
-        self.expressions();
-        self.close_bracket(TokenKind::RightParen, "',' or ')'");
-        self.finish(mark, NodeKind::ErrorNumbers);
     }
 }

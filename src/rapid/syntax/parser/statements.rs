@@ -1,6 +1,6 @@
 //! Statements: `grammar/statements.ebnf`.
 
-use super::recovery::{ends_block, starts_data, starts_statement};
+use super::recovery::{ends_block, opens_routine, starts_data, starts_statement};
 use super::{Parser, SplitIf};
 use crate::rapid::syntax::node::NodeKind;
 use crate::rapid::syntax::token::TokenKind;
@@ -13,10 +13,8 @@ impl Parser<'_> {
         let mark = self.mark();
         loop {
             self.quiet = false;
-            if self.at(TokenKind::EndOfFile) {
-                break;
-            }
-            if self.at_routine() || self.misspelt_closer() > 0 {
+            let ends = self.at(TokenKind::EndOfFile) || self.at_routine();
+            if ends || self.misspelt_closer() > 0 {
                 break;
             }
             if self.foreign_branch_end() {
@@ -32,10 +30,7 @@ impl Parser<'_> {
             } else {
                 self.statement();
             }
-            debug_assert!(self.position > before, "every round reads something");
-            if self.position == before {
-                self.leaf(NodeKind::Error);
-            }
+            self.ensure_progress(before);
         }
         self.quiet = false;
         self.finish(mark, NodeKind::Block);
@@ -43,8 +38,7 @@ impl Parser<'_> {
 
     /// Whether a routine that starts with `LOCAL` is here.
     pub(super) fn at_routine(&mut self) -> bool {
-        self.at(TokenKind::Local)
-            && matches!(self.next(), TokenKind::Proc | TokenKind::Func | TokenKind::Trap)
+        self.at(TokenKind::Local) && opens_routine(self.next())
     }
 
     /// One statement or data declaration; reads at least one token.
@@ -61,13 +55,15 @@ impl Parser<'_> {
             TokenKind::For => self.for_statement(),
             TokenKind::While => self.while_statement(),
             TokenKind::Test => self.test_statement(),
-            TokenKind::Goto => self.goto_statement(),
+            TokenKind::Goto => self.keyword_statement(NodeKind::GotoStatement, Self::name),
             TokenKind::Return => self.value_statement(NodeKind::ReturnStatement),
             TokenKind::Raise => self.value_statement(NodeKind::RaiseStatement),
-            TokenKind::Exit => self.word_statement(NodeKind::ExitStatement),
-            TokenKind::Retry => self.word_statement(NodeKind::RetryStatement),
-            TokenKind::TryNext => self.word_statement(NodeKind::TryNextStatement),
-            TokenKind::Connect => self.connect_statement(),
+            TokenKind::Exit => self.keyword_statement(NodeKind::ExitStatement, |_| {}),
+            TokenKind::Retry => self.keyword_statement(NodeKind::RetryStatement, |_| {}),
+            TokenKind::TryNext => self.keyword_statement(NodeKind::TryNextStatement, |_| {}),
+            TokenKind::Connect => {
+                self.keyword_statement(NodeKind::ConnectStatement, Self::connection);
+            }
             TokenKind::Percent => self.call_statement(),
             TokenKind::Placeholder => self.placeholder_statement(),
             TokenKind::Semicolon => {
@@ -113,12 +109,7 @@ impl Parser<'_> {
     fn assignment(&mut self) {
         let mark = self.mark();
         self.variable();
-        if self.eat(TokenKind::Assign) {
-            self.expression();
-        } else if !self.quiet && self.at(TokenKind::Equal) {
-            self.wrong_token(TokenKind::Assign);
-            self.expression();
-        } else {
+        if !self.assigned_value() {
             self.error_expected("':='");
         }
         self.end_statement("an operator or ';'");
@@ -197,14 +188,12 @@ impl Parser<'_> {
         let opener = self.position;
         self.bump();
         if self.commented_condition(TokenKind::Then) {
-            self.if_block(mark, opener);
-            return;
+            return self.if_block(mark, opener);
         }
         self.expression();
         let broken = self.quiet || self.then_follows();
         if !broken && self.commented_condition(TokenKind::Then) {
-            self.if_block(mark, opener);
-            return;
+            return self.if_block(mark, opener);
         }
         if !broken && starts_statement(self.current()) {
             if self.first_on_line(self.position) {
@@ -352,9 +341,7 @@ impl Parser<'_> {
             if starts_statement(self.current()) && !ends_block(self.current()) {
                 self.block();
             }
-            if self.position > start {
-                self.finish(rest, NodeKind::Error);
-            }
+            self.finish_skipped(rest, start);
         }
         self.cases();
         self.close();
@@ -396,14 +383,6 @@ impl Parser<'_> {
         }
     }
 
-    fn goto_statement(&mut self) {
-        let mark = self.mark();
-        self.bump();
-        self.name();
-        self.end_statement("';'");
-        self.finish(mark, NodeKind::GotoStatement);
-    }
-
     /// `RETURN value;`, `RAISE number;`
     fn value_statement(&mut self, kind: NodeKind) {
         let mark = self.mark();
@@ -417,23 +396,20 @@ impl Parser<'_> {
         self.finish(mark, kind);
     }
 
-    /// A statement of one keyword, such as `EXIT;`.
-    fn word_statement(&mut self, kind: NodeKind) {
+    /// A keyword and what `rest` reads, up to the `;`.
+    fn keyword_statement(&mut self, kind: NodeKind, rest: impl FnOnce(&mut Self)) {
         let mark = self.mark();
         self.bump();
+        rest(self);
         self.end_statement("';'");
         self.finish(mark, kind);
     }
 
-    /// `CONNECT variable WITH trap;`
-    fn connect_statement(&mut self) {
-        let mark = self.mark();
-        self.bump();
+    /// `variable WITH trap` after `CONNECT`.
+    fn connection(&mut self) {
         self.variable();
         if self.expect(TokenKind::With) {
             self.name();
         }
-        self.end_statement("';'");
-        self.finish(mark, NodeKind::ConnectStatement);
     }
 }

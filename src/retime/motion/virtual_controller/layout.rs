@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::draft::{Draft, RunDraft, WaitDraft};
 use super::load::effective_load;
 use super::state::VirtualController;
-use crate::rapid::ir::exec::Waited;
+use crate::rapid::ir::exec::WaitResult;
 use crate::rapid::ir::movement::{Movement, Stop, Wait};
 use crate::retime::motion::run_plan::Planned;
 use crate::retime::motion::timeline::{Event, MoveRecord, Run, WaitBasis, WaitRecord, What};
@@ -162,14 +162,14 @@ impl VirtualController<'_> {
     fn lay_wait(&mut self, WaitDraft { wait, q, load }: WaitDraft) {
         // Logic during a movement with \Conc takes no additional time.
         let begin = self.time - self.ahead;
-        self.waited_last = Waited::Ended;
+        self.waited_last = WaitResult::Ended;
         let (length, basis) = match (wait.duration, self.input_at(&wait)) {
             (Some(duration), _) => (duration, WaitBasis::Stated),
             (None, Some(at)) => {
                 let rest = (at - begin).max(0.0);
                 match wait.max_time {
                     Some(most) if most < rest => {
-                        self.waited_last = Waited::TimedOut;
+                        self.waited_last = WaitResult::TimedOut;
                         (most, WaitBasis::Stated)
                     }
                     _ => (rest, WaitBasis::Input),
@@ -193,7 +193,8 @@ impl VirtualController<'_> {
         if let Some(signal) = &wait.signal {
             self.asked.insert(signal.to_lowercase());
         }
-        if let Some(signal) = wait.signal.as_ref().filter(|_| self.waited_last == Waited::Ended) {
+        if let Some(signal) = wait.signal.as_ref().filter(|_| self.waited_last == WaitResult::Ended)
+        {
             self.waited.insert(signal.to_lowercase(), begin + length);
         }
         let duration = (length - self.ahead).max(0.0);

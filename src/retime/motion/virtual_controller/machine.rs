@@ -7,12 +7,12 @@ use super::load::{gripped, gripping};
 use super::state::{Pending, VirtualController};
 use crate::arm::dynamics::Load;
 use crate::arm::kinematics::fk;
-use crate::rapid::ir::exec::{Machine, Waited};
+use crate::rapid::ir::exec::{Machine, WaitResult};
 use crate::rapid::ir::movement::{Movement, Output, Target, Unresolved, Wait};
 use crate::retime::path::joint_path::Joints;
 
 impl Machine for VirtualController<'_> {
-    fn moves(&mut self, movement: Result<Movement, Unresolved>) {
+    fn on_movement(&mut self, movement: Result<Movement, Unresolved>) {
         self.moves += 1;
         let movement = match movement {
             Ok(movement) => movement,
@@ -53,7 +53,7 @@ impl Machine for VirtualController<'_> {
         }
     }
 
-    fn waits(&mut self, wait: Wait) -> Waited {
+    fn on_wait(&mut self, wait: Wait) -> WaitResult {
         self.flush();
         let may_time_out = wait.max_time.is_some() && self.input_at(&wait).is_some();
         let load = self
@@ -62,13 +62,13 @@ impl Machine for VirtualController<'_> {
             .map_or_else(Load::none, |tool| gripped(tool, wait.grip_load.as_ref()));
         self.keep(Draft::Wait(Box::new(WaitDraft { wait, q: self.q, load })));
         if !may_time_out {
-            return Waited::Ended;
+            return WaitResult::Ended;
         }
         self.lay_out();
         self.waited_last
     }
 
-    fn sets(&mut self, output: Output) {
+    fn on_output(&mut self, output: Output) {
         // Fly-by movements continue during the output; its position in the order is kept.
         let position = self.pending.len();
         self.keep(Draft::Output(output, position));
@@ -90,22 +90,22 @@ impl Machine for VirtualController<'_> {
         100.0 * self.options.speed_override.unwrap_or(1.0)
     }
 
-    fn robot(&self) -> Option<String> {
+    fn robot_type(&self) -> Option<String> {
         Some(self.model.type_name().to_owned())
     }
 
-    fn repeats(&mut self) {
+    fn on_endless_loop(&mut self) {
         // The pending movements become the next event, and their end belongs to the loop.
         self.repeats_from.get_or_insert(self.events.len() + self.drafts.len());
     }
 
-    fn leaves_loop(&mut self) {
+    fn on_loop_left(&mut self) {
         self.repeats_from = None;
     }
 
-    fn has_come(&mut self, signal: &str) -> Option<bool> {
+    fn input_has_changed(&mut self, signal: &str) -> Option<bool> {
         let key = signal.to_lowercase();
-        let at = self.comes_at(signal)?;
+        let at = self.input_change_time(signal)?;
         let come = self.time + self.pending_s >= at;
         if come {
             self.waited.insert(key, at);
@@ -113,7 +113,7 @@ impl Machine for VirtualController<'_> {
         Some(come)
     }
 
-    fn comes_at(&mut self, signal: &str) -> Option<f64> {
+    fn input_change_time(&mut self, signal: &str) -> Option<f64> {
         let key = signal.to_lowercase();
         let delay = self.options.inputs.get(&key).copied();
         self.asked.insert(key.clone());
@@ -122,7 +122,7 @@ impl Machine for VirtualController<'_> {
         Some(self.waited.get(&key).copied().unwrap_or(0.0) + delay)
     }
 
-    fn passes(&self) -> u32 {
+    fn endless_loop_passes(&self) -> u32 {
         self.options.passes.unwrap_or(1)
     }
 
@@ -130,7 +130,7 @@ impl Machine for VirtualController<'_> {
         self.options.levels.get(signal).copied()
     }
 
-    fn is_full(&self) -> bool {
+    fn is_at_limit(&self) -> bool {
         self.is_long() || self.late
     }
 }

@@ -38,11 +38,11 @@ pub fn replay(
     machine.tool = before.map(gripping);
     for step in steps {
         match step {
-            Step::Move(movement) => machine.moves(Ok(*movement)),
+            Step::Move(movement) => machine.on_movement(Ok(*movement)),
             Step::Wait(wait) => {
-                machine.waits(*wait);
+                machine.on_wait(*wait);
             }
-            Step::Output(output) => machine.sets(*output),
+            Step::Output(output) => machine.on_output(*output),
         }
     }
     machine.flush();

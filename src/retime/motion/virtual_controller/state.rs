@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::draft::Draft;
 use super::options::Options;
 use crate::arm::robot::Model;
-use crate::rapid::ir::exec::{Note, Waited};
+use crate::rapid::ir::exec::{Note, WaitResult};
 use crate::rapid::ir::movement::{Movement, Tool};
 use crate::rapid::text::Span;
 use crate::retime::motion::timeline::{Event, What};
@@ -40,7 +40,7 @@ pub(super) struct VirtualController<'a> {
     /// Lead of the program over the motion (`\Conc`), s.
     pub(super) ahead: f64,
     /// Outcome of the last wait.
-    pub(super) waited_last: Waited,
+    pub(super) waited_last: WaitResult,
     /// Assumptions about the controller.
     pub(super) assumed: Vec<String>,
     /// Items that are not yet on the time line; each becomes one event.
@@ -71,7 +71,7 @@ impl<'a> VirtualController<'a> {
             pending: Vec::new(),
             pending_s: 0.0,
             ahead: 0.0,
-            waited_last: Waited::Ended,
+            waited_last: WaitResult::Ended,
             assumed: Vec::new(),
             drafts: Vec::new(),
             notes: Vec::new(),

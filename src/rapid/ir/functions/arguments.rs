@@ -6,7 +6,7 @@ use crate::rapid::ir::convert;
 use crate::rapid::ir::value::Datum;
 
 /// The arguments of a call, all with known values.
-pub(in crate::rapid::ir) struct Given<'v> {
+pub(in crate::rapid::ir) struct EvaluatedArguments<'v> {
     /// In order, without the optional ones.
     pub(in crate::rapid::ir) args: Vec<&'v Datum>,
     /// Lower-case name and value of the optional ones; switches have none.
@@ -14,11 +14,11 @@ pub(in crate::rapid::ir) struct Given<'v> {
 }
 
 /// A value with its type.
-pub(in crate::rapid::ir) type Typed = (Datum, &'static str);
+pub(in crate::rapid::ir) type TypedDatum = (Datum, &'static str);
 /// Returns the value; `None` if the arguments do not fit.
-pub(in crate::rapid::ir) type Function = fn(&Given<'_>) -> Option<Typed>;
+pub(in crate::rapid::ir) type Function = fn(&EvaluatedArguments<'_>) -> Option<TypedDatum>;
 
-impl Given<'_> {
+impl EvaluatedArguments<'_> {
     pub(super) fn num(&self, index: usize) -> Option<f64> {
         self.args.get(index)?.num()
     }
@@ -47,10 +47,10 @@ impl Given<'_> {
     }
 }
 
-pub(super) fn num(value: f64) -> Option<Typed> {
+pub(super) fn num(value: f64) -> Option<TypedDatum> {
     value.is_finite().then_some((Datum::Num(value), "num"))
 }
 
-pub(super) fn boolean(value: bool) -> Typed {
+pub(super) fn boolean(value: bool) -> TypedDatum {
     (Datum::Bool(value), "bool")
 }
