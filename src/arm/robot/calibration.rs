@@ -24,8 +24,7 @@ impl Calibration {
     pub(super) fn read(mut fields: Fields) -> Result<Calibration, RobotError> {
         let place = fields.place();
         let count = Accepts::Between(2.0, MOST, "a whole number from 2 to 4096");
-        let robots = fields.number("robots", count)?;
-        let robots = fields.required("robots", robots)? as usize;
+        let robots = fields.must("robots", |f, key| f.number(key, count))? as usize;
         let mut draws = Vec::new();
         if let Some(mut table) = fields.table("draws")? {
             let far = Accepts::Between(-FARTHEST, FARTHEST, "at least -20 and at most 20");

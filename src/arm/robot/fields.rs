@@ -63,7 +63,7 @@ pub(super) const TURN: Accepts = Accepts::Between(
 /// Numbers from this size on have an exponent in messages.
 const HUGE: f64 = 1e9;
 /// Largest bound of a bounded joint \[rad\].
-const FARTHEST_TURN: f64 = 50.0;
+pub(super) const FARTHEST_TURN: f64 = 50.0;
 /// Smallest bound of an endless joint \[rad\].
 const ENDLESS: f64 = 600.0;
 
@@ -74,6 +74,8 @@ pub(super) struct Fields {
     entries: BTreeMap<String, Node>,
     known: Vec<String>,
     origins: Vec<Origin>,
+    /// The origins of the tables below this one that were read.
+    inner: Vec<Origin>,
 }
 
 impl Fields {
@@ -86,6 +88,7 @@ impl Fields {
                 entries,
                 known: Vec::new(),
                 origins: Vec::new(),
+                inner: Vec::new(),
             }),
             other => Err(RobotError::Type {
                 place: node.place.to_string(),
@@ -106,7 +109,7 @@ impl Fields {
         self.entries.get(key).map_or_else(|| self.place(), |node| node.place.to_string())
     }
 
-    /// The origins of the read keys; an error if a key was not read.
+    /// The origins of the read keys, first those of the tables below; an error if a key was not read.
     pub(super) fn finish(self) -> Result<Vec<Origin>, RobotError> {
         if let Some((key, node)) = self.entries.first_key_value() {
             return Err(RobotError::UnknownKey {
@@ -116,7 +119,37 @@ impl Fields {
                 known: self.known,
             });
         }
-        Ok(self.origins)
+        Ok([self.inner, self.origins].concat())
+    }
+
+    /// What `read` makes of a table below this one, if it is present. All its keys must be read.
+    pub(super) fn part<T>(
+        &mut self,
+        key: &str,
+        read: impl FnOnce(&mut Fields) -> Result<T, RobotError>,
+    ) -> Result<Option<T>, RobotError> {
+        self.table(key)?.map(|table| self.whole(table, read)).transpose()
+    }
+
+    /// The same for each table of a list.
+    pub(super) fn parts<T>(
+        &mut self,
+        key: &str,
+        mut read: impl FnMut(&mut Fields) -> Result<T, RobotError>,
+    ) -> Result<Vec<T>, RobotError> {
+        let tables = self.tables(key)?.into_iter();
+        tables.map(|table| self.whole(table, &mut read)).collect()
+    }
+
+    /// The same for a given table below this one.
+    pub(super) fn whole<T>(
+        &mut self,
+        mut table: Fields,
+        read: impl FnOnce(&mut Fields) -> Result<T, RobotError>,
+    ) -> Result<T, RobotError> {
+        let part = read(&mut table)?;
+        self.inner.extend(table.finish()?);
+        Ok(part)
     }
 
     /// The node of a key, if present.
@@ -148,6 +181,16 @@ impl Fields {
             key: key.to_owned(),
             instead: nearest(key, self.entries.keys().map(String::as_str)).map(str::to_owned),
         })
+    }
+
+    /// What `read` finds at a key, or an error for a missing key.
+    pub(super) fn must<T>(
+        &mut self,
+        key: &str,
+        read: impl FnOnce(&mut Fields, &str) -> Result<Option<T>, RobotError>,
+    ) -> Result<T, RobotError> {
+        let value = read(self, key)?;
+        self.required(key, value)
     }
 
     /// A text.
@@ -197,8 +240,7 @@ impl Fields {
 
     /// A joint number, counted from 1 in the file and from 0 in the result.
     pub(super) fn joint(&mut self, key: &str, dof: usize) -> Result<usize, RobotError> {
-        let node = self.take(key);
-        let node = self.required(key, node)?;
+        let node = self.must(key, |fields, key| Ok(fields.take(key)))?;
         let value = self.as_number(key, &node, Accepts::Positive)?;
         if value.fract() != 0.0 || value > dof as f64 {
             return Err(RobotError::Value {

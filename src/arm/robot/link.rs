@@ -4,7 +4,6 @@ use nalgebra::{Isometry3, Matrix3, SymmetricEigen, Vector3};
 
 use super::error::RobotError;
 use super::fields::{Accepts, Fields, LENGTH};
-use super::provenance::Origin;
 
 /// Tolerance of consistency relative to the largest principal moment: rounding of printed numbers.
 const ROUNDING: f64 = 1e-9;
@@ -81,13 +80,10 @@ impl Link {
         Link { mass, com, inertia: about(self) + about(other) }
     }
 
-    pub(super) fn read(mut fields: Fields, origins: &mut Vec<Origin>) -> Result<Link, RobotError> {
-        let mass = fields.number("mass", MASS)?;
-        let mass = fields.required("mass", mass)?;
-        let com = fields.array::<3>("com", LENGTH)?;
-        let com = fields.required("com", com)?;
-        let inertia = fields.array::<6>("inertia", Accepts::Finite)?;
-        let moments = fields.required("inertia", inertia)?;
+    pub(super) fn read(fields: &mut Fields) -> Result<Link, RobotError> {
+        let mass = fields.must("mass", |f, key| f.number(key, MASS))?;
+        let com: [f64; 3] = fields.must("com", |f, key| f.array(key, LENGTH))?;
+        let moments = fields.must("inertia", |f, key| f.array(key, Accepts::Finite))?;
         let inertia = symmetric(moments);
         let principal = principal_moments(&inertia);
         if principal[0] < -ROUNDING * principal[2].abs() {
@@ -102,7 +98,6 @@ impl Link {
                 ),
             });
         }
-        origins.extend(fields.finish()?);
         Ok(Link { mass, com: Vector3::from(com), inertia })
     }
 }
@@ -116,14 +111,15 @@ pub(super) struct ArmLoad {
 }
 
 impl ArmLoad {
+    /// The part in a table of the robot.
     pub(super) fn read(
-        mut fields: Fields,
+        robot: &mut Fields,
+        table: Fields,
         dof: usize,
-        origins: &mut Vec<Origin>,
     ) -> Result<ArmLoad, RobotError> {
-        let joint = fields.joint("joint", dof)?;
-        let (place, key) = (fields.place_of("inertia"), fields.path("inertia"));
-        let body = Link::read(fields, origins)?;
+        let (place, key) = (table.place_of("inertia"), table.path("inertia"));
+        let read = |fields: &mut Fields| Ok((fields.joint("joint", dof)?, Link::read(fields)?));
+        let (joint, body) = robot.whole(table, read)?;
         match body.impossible() {
             None => Ok(ArmLoad { joint, body }),
             Some(why) => Err(RobotError::Value {

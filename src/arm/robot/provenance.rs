@@ -29,13 +29,8 @@ impl Provenance {
 
 impl fmt::Display for Provenance {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Provenance::Datasheet => "datasheet",
-            Provenance::Identified => "identified",
-            Provenance::Paper => "paper",
-            Provenance::Estimated => "estimated",
-            Provenance::Assumed => "assumed",
-        })
+        let word = Provenance::WORDS.iter().find(|(_, provenance)| provenance == self);
+        f.write_str(word.map_or("", |(word, _)| word))
     }
 }
 

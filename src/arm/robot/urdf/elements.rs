@@ -3,16 +3,13 @@
 use nalgebra::{Isometry3, Matrix3, Quaternion, UnitQuaternion, Vector3};
 use roxmltree::Node;
 
+use crate::arm::robot::fields::{FARTHEST_TURN, is_turn};
 use crate::arm::robot::link::symmetric;
 
 /// Largest distance between parts of a robot \[m\]; larger values are in millimetres.
 const FARTHEST: f64 = 50.0;
 /// Largest angle of a placement \[rad\]; larger values are in degrees.
 const LARGEST_ANGLE: f64 = 13.0;
-/// Largest bound of a joint that is not endless \[rad\]; larger values are in degrees.
-const FARTHEST_TURN: f64 = 50.0;
-/// Smallest bound of endless joints \[rad\].
-const ENDLESS: f64 = 600.0;
 /// Largest mass of a body \[kg\].
 const HEAVIEST: f64 = 1e5;
 /// First URDF versions with quaternions, and with accelerations and other default limits.
@@ -201,7 +198,7 @@ fn read_limit<'a, 'i>(joint: Node<'a, 'i>) -> Result<Limit, Wrong<'a, 'i>> {
         let Some(text) = node.attribute(name) else { return Ok(absent) };
         let value = text.trim().parse().ok().filter(|value: &f64| !value.is_nan());
         let value = value.ok_or_else(|| not_a_number(joint, node, name, unit))?;
-        if unit == "rad" && value.abs() > FARTHEST_TURN && value.abs() < ENDLESS {
+        if unit == "rad" && !is_turn(value) {
             let message = format!(
                 "{whose} may turn to {value} rad; limits are in radians, at most \
                  {FARTHEST_TURN}: make it continuous, or turn degrees into radians"
