@@ -60,7 +60,7 @@ pub fn rnea_derivatives(
 
     let mut rotation = Matrix3::identity();
     let mut origin = Vector3::zeros();
-    let mut v = Motion::zero();
+    let mut v = Motion::default();
     let mut a = Motion { angular: Vector3::zeros(), linear: model.kinematics.up() * GRAVITY };
     for i in 0..n {
         let joint = &geometry.joints[i];

@@ -146,11 +146,9 @@ impl SpeedBounds<'_> {
 
 /// Start and end of each zone in s.
 fn zones(path: &JointPath) -> Vec<(f64, f64)> {
-    let is_zone =
-        |piece: &Piece| matches!(piece.kind, PieceKind::CartesianZone | PieceKind::JointZone);
     let mut zones: Vec<(f64, f64)> = Vec::new();
     let mut corner = None;
-    for piece in path.pieces().iter().filter(|piece| is_zone(piece)) {
+    for piece in path.pieces().iter().filter(|piece| piece.kind.is_zone()) {
         let end = piece.s + piece.length;
         // Zones may touch; each lies around the end of one leg.
         let before = piece.leg.checked_sub(1).map_or(0.0, |leg| path.leg_end(leg));
