@@ -76,7 +76,7 @@ impl Plant for Arm<'_> {
     }
 
     fn torque_limit(&self) -> Joints {
-        motion_limits(&self.0.model, 1.0).torque
+        motion_limits(&self.0.model).torque
     }
 }
 
@@ -123,7 +123,7 @@ fn robot(case: &Case) -> Value {
 }
 
 fn path(case: &Case) -> Value {
-    let limits = motion_limits(&case.model, 1.0);
+    let limits = motion_limits(&case.model);
     let limits = PathLimits::new(limits.acceleration, limits.torque).unwrap();
     let caps = vec![SpeedCap::NONE; case.run().moves.len()];
     let (path, loaded) =

@@ -100,7 +100,7 @@ fn task<'a>(case: &'a Case, freedom: &'a Freedom) -> Task<'a> {
 /// The fastest profile on the path of a case without a jerk limit, with grid and limits.
 fn fastest(case: &Case) -> Option<(PathGrid, PathLimits, Profile)> {
     let (path, run) = (case.path()?, case.run());
-    let limits = motion_limits(&case.model, 1.0);
+    let limits = motion_limits(&case.model);
     let limits = PathLimits::new(limits.acceleration, limits.torque).ok()?;
     let moves = run.moves.iter().map(|record| record.movement.line_speed());
     let caps: Vec<SpeedCap> = moves.map(|tcp| SpeedCap { tcp, ..SpeedCap::NONE }).collect();

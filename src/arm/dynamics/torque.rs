@@ -3,7 +3,7 @@
 use crate::arm::robot::{MAX_DOF, Model};
 
 use super::data::Data;
-use super::friction::{friction, sense};
+use super::friction::{friction, sign};
 use super::laws::laws;
 use super::load::Load;
 use super::motor_side::{motor_rates, rotor_torques};
@@ -46,8 +46,8 @@ pub fn torque_each<const N: usize>(
 fn through_gears(model: &Model, [q, qd, qdd]: [&[f64]; 3], mut rigid: [f64; MAX_DOF]) -> Torque {
     let mut friction = friction(model, qd, &rigid);
     if !model.laws.is_empty() {
-        let senses = motor_rates(model, qd).map(sense);
-        let [between, rubbing] = laws(model, f64::INFINITY, [q, qd], &rigid, &senses);
+        let signs = motor_rates(model, qd).map(sign);
+        let [between, rubbing] = laws(model, f64::INFINITY, [q, qd], &rigid, &signs);
         for joint in 0..model.dof {
             rigid[joint] += between[joint];
             friction[joint] += rubbing[joint];

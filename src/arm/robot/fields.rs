@@ -196,9 +196,9 @@ impl Fields {
     /// A text.
     pub(super) fn text(&mut self, key: &str) -> Result<Option<String>, RobotError> {
         let Some(node) = self.take(key) else { return Ok(None) };
-        match node.value {
-            Value::Text(text) => Ok(Some(text)),
-            other => Err(self.wrong_type(key, &node.place, &other, "a text")),
+        match &node.value {
+            Value::Text(text) => Ok(Some(text.clone())),
+            _ => Err(self.wrong_type(key, &node, "a text")),
         }
     }
 
@@ -208,22 +208,20 @@ impl Fields {
         key: &str,
         words: &[(&str, T)],
     ) -> Result<Option<T>, RobotError> {
-        let Some(node) = self.take(key) else { return Ok(None) };
         let list = words.iter().map(|(word, _)| format!("\"{word}\"")).collect::<Vec<_>>();
         let expected = list.join(" or ");
-        let Value::Text(text) = &node.value else {
-            return Err(self.wrong_type(key, &node.place, &node.value, &expected));
-        };
-        let Some((_, value)) = words.iter().find(|(word, _)| word == text) else {
-            return Err(RobotError::Value {
+        self.noted(key, |fields, node| {
+            let Value::Text(text) = &node.value else {
+                return Err(fields.wrong_type(key, node, &expected));
+            };
+            let found = words.iter().find(|(word, _)| word == text);
+            found.map(|(_, value)| *value).ok_or_else(|| RobotError::Value {
                 place: node.place.to_string(),
-                key: self.path(key),
+                key: fields.path(key),
                 value: format!("\"{text}\""),
-                must: expected,
-            });
-        };
-        self.note(key, &node);
-        Ok(Some(*value))
+                must: expected.clone(),
+            })
+        })
     }
 
     /// A number.
@@ -232,10 +230,7 @@ impl Fields {
         key: &str,
         accepts: Accepts,
     ) -> Result<Option<f64>, RobotError> {
-        let Some(node) = self.take(key) else { return Ok(None) };
-        let value = self.as_number(key, &node, accepts)?;
-        self.note(key, &node);
-        Ok(Some(value))
+        self.noted(key, |fields, node| fields.as_number(key, node, accepts))
     }
 
     /// A joint number, counted from 1 in the file and from 0 in the result.
@@ -275,10 +270,7 @@ impl Fields {
 
     /// An interval `[low, high]`.
     pub(super) fn interval(&mut self, key: &str) -> Result<Option<[f64; 2]>, RobotError> {
-        let Some(node) = self.take(key) else { return Ok(None) };
-        let interval = self.as_interval(key, &node)?;
-        self.note(key, &node);
-        Ok(Some(interval))
+        self.noted(key, |fields, node| fields.as_interval(key, node))
     }
 
     /// An interval for each of `dof` joints.
@@ -287,12 +279,10 @@ impl Fields {
         key: &str,
         dof: usize,
     ) -> Result<Option<Vec<[f64; 2]>>, RobotError> {
-        let Some(node) = self.take(key) else { return Ok(None) };
-        let items = self.as_list(key, &node, dof, &per_joint_words(dof))?;
-        let intervals =
-            items.iter().map(|item| self.as_interval(key, item)).collect::<Result<_, _>>()?;
-        self.note(key, &node);
-        Ok(Some(intervals))
+        self.noted(key, |fields, node| {
+            let items = fields.as_list(key, node, dof, &per_joint_words(dof))?;
+            items.iter().map(|item| fields.as_interval(key, item)).collect()
+        })
     }
 
     /// A table below this one.
@@ -305,7 +295,7 @@ impl Fields {
     pub(super) fn tables(&mut self, key: &str) -> Result<Vec<Fields>, RobotError> {
         let Some(node) = self.take(key) else { return Ok(Vec::new()) };
         let Value::List(items) = node.value else {
-            return Err(self.wrong_type(key, &node.place, &node.value, "a list of tables"));
+            return Err(self.wrong_type(key, &node, "a list of tables"));
         };
         let name = self.path(key);
         items
@@ -323,14 +313,10 @@ impl Fields {
         expected: &str,
         accepts: Accepts,
     ) -> Result<Option<Vec<f64>>, RobotError> {
-        let Some(node) = self.take(key) else { return Ok(None) };
-        let items = self.as_list(key, &node, len, expected)?;
-        let list = items
-            .iter()
-            .map(|item| self.as_number(key, item, accepts))
-            .collect::<Result<_, _>>()?;
-        self.note(key, &node);
-        Ok(Some(list))
+        self.noted(key, |fields, node| {
+            let items = fields.as_list(key, node, len, expected)?;
+            items.iter().map(|item| fields.as_number(key, item, accepts)).collect()
+        })
     }
 
     fn as_list<'n>(
@@ -341,7 +327,7 @@ impl Fields {
         expected: &str,
     ) -> Result<&'n [Node], RobotError> {
         let Value::List(items) = &node.value else {
-            return Err(self.wrong_type(key, &node.place, &node.value, expected));
+            return Err(self.wrong_type(key, node, expected));
         };
         if items.len() == len {
             return Ok(items);
@@ -356,7 +342,7 @@ impl Fields {
 
     fn as_number(&self, key: &str, node: &Node, accepts: Accepts) -> Result<f64, RobotError> {
         let Value::Number(value) = node.value else {
-            return Err(self.wrong_type(key, &node.place, &node.value, "a number"));
+            return Err(self.wrong_type(key, node, "a number"));
         };
         if accepts.holds(value) { Ok(value) } else { Err(self.refused(key, node, value, accepts)) }
     }
@@ -390,14 +376,22 @@ impl Fields {
         })
     }
 
-    fn note(&mut self, key: &str, node: &Node) {
+    /// What `read` makes of the value of a key, whose origin is noted, if it is present.
+    fn noted<T>(
+        &mut self,
+        key: &str,
+        read: impl FnOnce(&Fields, &Node) -> Result<T, RobotError>,
+    ) -> Result<Option<T>, RobotError> {
+        let Some(node) = self.take(key) else { return Ok(None) };
+        let value = read(self, &node)?;
         self.origins.push(Origin {
             table: self.name.clone(),
             key: key.to_owned(),
             provenance: node.stated.provenance,
-            source: node.stated.source.clone(),
-            sd: node.stated.sd.clone(),
+            source: node.stated.source,
+            sd: node.stated.sd,
         });
+        Ok(Some(value))
     }
 
     /// The key with its table for messages.
@@ -409,11 +403,11 @@ impl Fields {
         if self.name.is_empty() { "the robot".into() } else { format!("[{}]", self.name) }
     }
 
-    fn wrong_type(&self, key: &str, place: &Place, found: &Value, expected: &str) -> RobotError {
+    fn wrong_type(&self, key: &str, node: &Node, expected: &str) -> RobotError {
         RobotError::Type {
-            place: place.to_string(),
+            place: node.place.to_string(),
             key: self.path(key),
-            found: found.kind(),
+            found: node.value.kind(),
             expected: expected.to_owned(),
         }
     }

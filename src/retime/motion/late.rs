@@ -4,6 +4,7 @@
 //! the other points. So the intervals with an excess are lengthened in small steps until no limit
 //! is exceeded.
 
+use super::controller::limits;
 use super::sampling::Loaded;
 use super::stream::{Piece, Stream};
 use crate::arm::dynamics::{Data, torque};
@@ -21,13 +22,13 @@ const SLOWEST: f64 = 20.0;
 
 /// The stream as the robot executes it; unchanged if it keeps all limits.
 pub(super) fn within_limits(loaded: Loaded<'_>, stream: Stream) -> Stream {
-    let limits = Limits::new(loaded.model);
+    let most = Limits::new(loaded.model);
     let mut data = Data::new();
     let longest = SLOWEST * stream.duration();
     let mut late = stream;
     for _ in 0..ROUNDS {
         let factors: Vec<f64> =
-            late.pieces().map(|piece| limits.longer(loaded, &mut data, &piece)).collect();
+            late.pieces().map(|piece| most.longer(loaded, &mut data, &piece)).collect();
         if factors.iter().all(|factor| *factor <= 1.0) || late.duration() > longest {
             break;
         }
@@ -51,15 +52,10 @@ struct Limits {
 
 impl Limits {
     fn new(model: &Model) -> Limits {
-        let list = |limits: &Option<Vec<f64>>| -> Joints {
-            let limit = |j: usize| limits.as_ref().and_then(|limits| limits.get(j)).copied();
-            std::array::from_fn(|j| limit(j).unwrap_or(f64::INFINITY))
-        };
-        let limits = &model.limits;
         Limits {
-            velocity: list(&limits.velocity),
-            acceleration: list(&limits.acceleration),
-            torque: list(&model.torque_bounds().cloned()),
+            velocity: limits(model.limits.velocity.as_ref()),
+            acceleration: limits(model.limits.acceleration.as_ref()),
+            torque: limits(model.torque_bounds()),
         }
     }
 

@@ -4,6 +4,7 @@ use crate::arm::dynamics::Data;
 use crate::arm::robot::Model;
 use crate::retime::energy::power::power;
 use crate::retime::motion::Simulation;
+use crate::retime::motion::controller::limits;
 use crate::retime::motion::timeline::{Run, What};
 use crate::retime::path::joint_path::{DOF, Joints};
 
@@ -29,15 +30,10 @@ pub struct Loads {
 impl Loads {
     /// The limits of the robot.
     pub fn limits(model: &Model) -> Loads {
-        let limits = &model.limits;
         Loads {
-            acceleration: list(limits.acceleration.as_ref()),
-            jerk: list(limits.jerk.as_ref()),
-            torque: if model.has_dynamics() {
-                list(limits.torque.as_ref())
-            } else {
-                [f64::INFINITY; DOF]
-            },
+            acceleration: limits(model.limits.acceleration.as_ref()),
+            jerk: limits(model.limits.jerk.as_ref()),
+            torque: limits(model.limits.torque.as_ref().filter(|_| model.has_dynamics())),
         }
     }
 
@@ -110,9 +106,4 @@ pub(super) fn raise(most: &mut Joints, now: &Joints) {
     for j in 0..DOF {
         most[j] = most[j].max(now[j].abs());
     }
-}
-
-pub(super) fn list(limits: Option<&Vec<f64>>) -> Joints {
-    let limit = |j: usize| limits.and_then(|limits| limits.get(j)).copied();
-    std::array::from_fn(|j| limit(j).unwrap_or(f64::INFINITY))
 }

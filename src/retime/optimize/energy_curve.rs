@@ -1,6 +1,6 @@
 //! Least energy of a run as a function of its time.
 
-use super::cycle::{Known, TradeOff};
+use super::cycle::{EnergyCurve, Known};
 use super::energy_program::{EnergyBound, energy_bound, minimize_energy};
 use super::margins::Margins;
 use super::path_energy::evaluate;
@@ -148,8 +148,8 @@ impl<'a> Curve<'a> {
     }
 
     /// The curve through the computed points.
-    pub fn trade_off(&self) -> Option<TradeOff> {
+    pub fn energy_curve(&self) -> Option<EnergyCurve> {
         let known: Vec<Known> = self.known.iter().map(|(known, _)| *known).collect();
-        TradeOff::through(&known, self.range)
+        EnergyCurve::through(&known, self.range)
     }
 }

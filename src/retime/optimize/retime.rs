@@ -89,23 +89,20 @@ pub fn retime(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
         let path = PathUse::KeptFor(Reason::KeepOut);
         return kept.map(|kept| Retiming { path, ..kept });
     }
-    let free = on_path(task, goal).map(|free| Retiming { path: PathUse::Left, ..free });
+    let free = on_path(task, goal).map(|free| {
+        let bound = free_bound(task, free.duration_s - task.run.settling);
+        let idle = free.energy.energy_j() - free.energy.motion_energy_j();
+        Retiming { path: PathUse::Left, lower_bound_j: bound + idle, ..free }
+    });
     match (kept, free) {
         (Ok(kept), Ok(free)) => {
-            let bound = free_bound(task, free.duration_s - task.run.settling);
-            let idle = free.energy.energy_j() - free.energy.motion_energy_j();
             let better = match goal {
                 Goal::Fastest => free.duration_s < kept.duration_s,
                 _ => free.energy.energy_j() < kept.energy.energy_j(),
             };
-            Ok(if better { Retiming { lower_bound_j: bound + idle, ..free } } else { kept })
+            Ok(if better { free } else { kept })
         }
-        (Ok(only), Err(_)) => Ok(only),
-        (Err(_), Ok(free)) => {
-            let bound = free_bound(task, free.duration_s - task.run.settling);
-            let idle = free.energy.energy_j() - free.energy.motion_energy_j();
-            Ok(Retiming { lower_bound_j: bound + idle, ..free })
-        }
+        (Ok(only), Err(_)) | (Err(_), Ok(only)) => Ok(only),
         (Err(reason), Err(_)) => Err(reason),
     }
 }

@@ -256,32 +256,19 @@ pub fn not_constant(movement: &Movement) -> Option<Reason> {
 }
 
 fn settings_allow(settings: &Settings) -> Result<(), Reason> {
-    let setting = |name: &str| Err(Reason::Setting(name.to_owned()));
-    if settings.speed_override != 1.0 {
-        return setting("VelSet");
-    }
-    if settings.acceleration != 1.0 || settings.ramp != 1.0 {
-        return setting("AccSet");
-    }
-    if settings.fine_point_ramp != 1.0 {
-        return setting("AccSet\\FinePointRamp");
-    }
-    if settings.refresh != 1.0 {
-        return setting("SpeedRefresh");
-    }
-    if settings.path_acceleration.iter().any(|limit| limit.is_finite()) {
-        return setting("PathAccLim");
-    }
-    if settings.world_acceleration.is_finite() {
-        return setting("WorldAccLim");
-    }
-    if settings.displacement.is_some() {
-        return setting("PDispSet");
-    }
-    match settings.other.first() {
-        Some(name) => setting(name),
-        None => Ok(()),
-    }
+    let limits_path = settings.path_acceleration.iter().any(|limit| limit.is_finite());
+    let in_force = [
+        (settings.speed_override != 1.0, "VelSet"),
+        (settings.acceleration != 1.0 || settings.ramp != 1.0, "AccSet"),
+        (settings.fine_point_ramp != 1.0, "AccSet\\FinePointRamp"),
+        (settings.refresh != 1.0, "SpeedRefresh"),
+        (limits_path, "PathAccLim"),
+        (settings.world_acceleration.is_finite(), "WorldAccLim"),
+        (settings.displacement.is_some(), "PDispSet"),
+    ];
+    let first = in_force.into_iter().find(|(is_set, _)| *is_set).map(|(_, name)| name.to_owned());
+    let setting = first.or_else(|| settings.other.first().map(ToString::to_string));
+    setting.map_or(Ok(()), |name| Err(Reason::Setting(name)))
 }
 
 /// Statement list and index of each statement.

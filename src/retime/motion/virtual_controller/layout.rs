@@ -2,12 +2,12 @@
 
 use rayon::prelude::*;
 
-use super::draft::{Draft, RunDraft, WaitDraft};
+use super::draft::{Draft, WaitDraft};
 use super::load::effective_load;
 use super::state::VirtualController;
 use crate::rapid::ir::exec::Waited;
 use crate::rapid::ir::movement::{Movement, Stop, Wait};
-use crate::retime::motion::run_plan::Planned;
+use crate::retime::motion::run_plan::{Planned, RunDraft};
 use crate::retime::motion::timeline::{Event, MoveRecord, Run, WaitBasis, WaitRecord, What};
 
 /// Drafts that are planned together: enough for all processors, few enough that an endless program

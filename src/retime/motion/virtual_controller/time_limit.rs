@@ -1,10 +1,9 @@
 //! Limits on the length of a simulation.
 
-use super::draft::RunDraft;
 use super::state::VirtualController;
 use crate::arm::kinematics::fk;
 use crate::rapid::ir::movement::Movement;
-use crate::retime::motion::run_plan::Planned;
+use crate::retime::motion::run_plan::{Planned, RunDraft};
 use crate::retime::motion::timeline::What;
 use crate::retime::path::{Leg, LegKind};
 
