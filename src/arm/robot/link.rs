@@ -102,33 +102,24 @@ impl Link {
     }
 }
 
-/// A part mounted on a link, such as a valve block on the upper arm.
-pub(super) struct ArmLoad {
-    /// The joint that moves it, from 0.
-    pub(super) joint: usize,
-    /// The body in the frame of that joint.
-    pub(super) body: Link,
-}
-
-impl ArmLoad {
-    /// The part in a table of the robot.
-    pub(super) fn read(
-        robot: &mut Fields,
-        table: Fields,
-        dof: usize,
-    ) -> Result<ArmLoad, RobotError> {
-        let (place, key) = (table.place_of("inertia"), table.path("inertia"));
-        let read = |fields: &mut Fields| Ok((fields.joint("joint", dof)?, Link::read(fields)?));
-        let (joint, body) = robot.whole(table, read)?;
-        match body.impossible() {
-            None => Ok(ArmLoad { joint, body }),
-            Some(why) => Err(RobotError::Value {
-                place,
-                key,
-                value: "[…]".into(),
-                must: format!("that of a body: {why}"),
-            }),
-        }
+/// A part mounted on a link, such as a valve block on the upper arm, in a table of the robot: the
+/// joint that moves it, from 0, and the body in the frame of that joint.
+pub(super) fn arm_load(
+    robot: &mut Fields,
+    table: Fields,
+    dof: usize,
+) -> Result<(usize, Link), RobotError> {
+    let (place, key) = (table.place_of("inertia"), table.path("inertia"));
+    let read = |fields: &mut Fields| Ok((fields.joint("joint", dof)?, Link::read(fields)?));
+    let (joint, body) = robot.whole(table, read)?;
+    match body.impossible() {
+        None => Ok((joint, body)),
+        Some(why) => Err(RobotError::Value {
+            place,
+            key,
+            value: "[…]".into(),
+            must: format!("that of a body: {why}"),
+        }),
     }
 }
 

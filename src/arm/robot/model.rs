@@ -10,7 +10,7 @@ use super::friction::Friction;
 use super::geometry::{Geometry, MAX_DOF};
 use super::law::Law;
 use super::limits::Limits;
-use super::link::{ArmLoad, Link};
+use super::link::{Link, arm_load};
 use super::motors::Motors;
 use super::provenance::{self, Origin, Provenance};
 use super::sensors::Sensors;
@@ -203,9 +203,9 @@ fn read_links(robot: &mut Fields, dof: usize) -> Result<Vec<Link>, RobotError> {
         });
     }
     for table in robot.tables("arm_load")? {
-        let load = ArmLoad::read(robot, table, dof)?;
-        if let Some(link) = links.get_mut(load.joint) {
-            *link = link.joined(&load.body);
+        let (joint, body) = arm_load(robot, table, dof)?;
+        if let Some(link) = links.get_mut(joint) {
+            *link = link.joined(&body);
         }
     }
     Ok(links)

@@ -42,12 +42,11 @@ pub fn plan(
     let nodes = sampling::nodes(loaded.model, path, caps, INTERVALS);
     let limits = PathLimits::new(limits.acceleration, limits.torque).map_err(|_| NoTiming)?;
     let task = Task { loaded, path, nodes: &nodes, limits: &limits, planning, times };
-    let planned = task.plan(caps)?;
+    let mut planned = task.plan(caps)?;
     if !tcp_limits::limited(&caps[path.legs()]) {
         return Ok(planned);
     }
     let mut tightened = caps.to_vec();
-    let mut planned = planned;
     for _ in 0..TIGHTENINGS {
         let worst = tcp_limits::worst(loaded.model, path, caps, &planned.0);
         let excess = |leg: usize| worst.get(leg).copied().filter(|x| *x > 1.0 + TCP_TOLERANCE);

@@ -4,7 +4,7 @@ use super::cycle::{EnergyCurve, Known};
 use super::energy_program::{EnergyBound, energy_bound, minimize_energy};
 use super::margins::Margins;
 use super::path_energy::evaluate;
-use super::run_problem::{RunProblem, Task, fastest_profile};
+use super::run_problem::{INTERVALS, RunProblem, Task, fastest_profile};
 use crate::retime::energy::account;
 use crate::retime::motion::timing::grid::PathGrid;
 use crate::retime::motion::timing::limits::PathLimits;
@@ -40,7 +40,7 @@ pub struct TimeEnergy {
 pub fn pareto(task: &Task<'_>, count: usize) -> Vec<TimeEnergy> {
     let curve = || {
         let problem = RunProblem::new(task).ok()?;
-        let (grid, limits) = problem.bare_grid(&Margins::none()).ok()?;
+        let (grid, limits) = problem.bare_grid(&Margins::none(), INTERVALS).ok()?;
         let fast = fastest_profile(&grid, &limits).ok()?;
         let (run, robot) = (task.run, task.model);
         let least = RESERVE_OF_CURVE * fast.duration();
@@ -82,7 +82,7 @@ impl<'a> Curve<'a> {
     /// current time of the run. `None` if no stream is possible.
     pub fn new(task: &'a Task<'a>, shortest: f64, longest: f64) -> Option<Curve<'a>> {
         let problem = RunProblem::new(task).ok()?;
-        let (grid, limits) = problem.grid_of(&Margins::first(problem.tolerance()), COARSE).ok()?;
+        let (grid, limits) = problem.grid(&Margins::first(problem.tolerance()), COARSE).ok()?;
         let fast = fastest_profile(&grid, &limits).ok()?;
         // The shortest time may be below the least time on the coarse grid.
         let reserve = RESERVE * fast.duration() + task.run.settling;

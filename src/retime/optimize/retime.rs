@@ -9,7 +9,7 @@ use super::keep_out;
 use super::margins::{FIRST_DISTANCE, Margins};
 use super::reason::Reason;
 pub use super::run_problem::Task;
-use super::run_problem::{RunProblem, fastest_profile};
+use super::run_problem::{INTERVALS, RunProblem, fastest_profile};
 use super::stream_rounding::{quantum, round_down, round_up, rounded_intervals};
 use crate::arm::dynamics::potential_energy;
 use crate::retime::energy::power::motion_energy;
@@ -213,11 +213,11 @@ impl RunProblem<'_> {
         margins: &Margins,
         bound: Option<&EnergyBound>,
     ) -> Result<Intended, Reason> {
-        let (mut grid, limits) = self.grid(margins)?;
+        let (mut grid, limits) = self.grid(margins, INTERVALS)?;
         let mut fast = fastest_profile(&grid, &limits)?;
         if fast.duration() > budget {
             // The grid without shaping permits a shorter time; polishing has to shape the motion.
-            (grid, _) = self.bare_grid(margins)?;
+            (grid, _) = self.bare_grid(margins, INTERVALS)?;
             fast = fastest_profile(&grid, &limits)?;
         }
         // The relaxation bounds the electrical energy only.
@@ -230,7 +230,7 @@ impl RunProblem<'_> {
 
     /// Lower bound of the motion energy on the path in this time at the full limits.
     fn bound(&self, budget: f64) -> Option<EnergyBound> {
-        let (grid, limits) = self.bare_grid(&Margins::none()).ok()?;
+        let (grid, limits) = self.bare_grid(&Margins::none(), INTERVALS).ok()?;
         let fast = fastest_profile(&grid, &limits).ok()?;
         energy_bound(&grid, &limits, &self.electrical, &fast, budget)
     }
@@ -241,7 +241,7 @@ impl RunProblem<'_> {
         let ramp = self.task.model.controller.ramp_s.unwrap_or(0.1);
         let mut problem = None;
         for _ in 0..ATTEMPTS {
-            let (grid, limits) = self.grid(&margins)?;
+            let (grid, limits) = self.grid(&margins, INTERVALS)?;
             let fast = fastest_profile(&grid, &limits)?;
             let mut best: Option<Attempt> = None;
             let step = ramp.max(SLOW_STEP * fast.duration());

@@ -272,6 +272,7 @@ fn settings_allow(settings: &Settings) -> Result<(), Reason> {
 }
 
 /// Statement list and index of each statement.
+#[derive(Default)]
 struct Places {
     by_span: BTreeMap<Span, (usize, usize)>,
     /// Statements that wait for a time, at which the robot stops.
@@ -282,8 +283,7 @@ struct Places {
 
 impl Places {
     fn new(program: &Program) -> Places {
-        let mut places =
-            Places { by_span: BTreeMap::new(), stops: BTreeSet::new(), compact: BTreeSet::new() };
+        let mut places = Places::default();
         let mut lists = 0;
         for module in &program.modules {
             for routine in &module.routines {

@@ -30,9 +30,8 @@ pub(super) struct Wrist {
 impl Wrist {
     /// From the wrist angles of `start` to those of `end` over `length`.
     pub(super) fn new(start: &Joints, end: &Joints, length: f64) -> Wrist {
-        let start3 = [start[3], start[4], start[5]];
         Wrist {
-            start: start3,
+            start: [start[3], start[4], start[5]],
             rate: std::array::from_fn(|j| (end[ARM + j] - start[ARM + j]) / length),
         }
     }

@@ -57,7 +57,7 @@ impl Known {
     /// The data of a robot by its type and its file.
     pub(super) fn from_model(model: &Model) -> Known {
         let text = table(type_name(model));
-        let mut known = text.map_or_else(Known::default, |text| Known::read(&text));
+        let mut known = text.map_or_else(Known::default, Known::read);
         if let Some(mass) = model.mass {
             let origin = model.origin_of("", "mass");
             let sd = origin.and_then(|origin| origin.sd.as_ref()).map_or(0.01, |sd| sd[0] / mass);
@@ -183,10 +183,10 @@ struct Table {
 }
 
 /// The text of the table of a robot without its header.
-fn table(name: &str) -> Option<String> {
+fn table(name: &str) -> Option<&'static str> {
     let (_, rest) = ROBOTS.split_once(&format!("\n[\"{name}\"]\n"))?;
     let end = rest.find("\n[\"").unwrap_or(rest.len());
-    Some(rest[..end].to_owned())
+    Some(&rest[..end])
 }
 
 #[cfg(test)]

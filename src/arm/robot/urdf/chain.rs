@@ -96,13 +96,7 @@ fn root(document: &Document) -> Result<&Link, RobotError> {
         return Err(document.error(other.line, message));
     }
     // Each link has one parent and there is one root, so unreached links form a loop.
-    let mut reached = vec![root.name.as_str()];
-    let mut next = 0;
-    while next < reached.len() {
-        let link = reached[next];
-        reached.extend(document.joints_of(link).map(|joint| joint.child.as_str()));
-        next += 1;
-    }
+    let reached = document.links_from(&root.name);
     let lost = document.joints.iter().find(|joint| !reached.contains(&joint.child.as_str()));
     if let Some(joint) = lost {
         let message = format!(
@@ -190,20 +184,14 @@ fn beside(document: &Document, chain: &Chain<'_>, joint: &Joint) -> Result<(), R
     if of_chain || joint.kind == Kind::Fixed {
         return Ok(());
     }
-    let mut links = vec![joint.child.as_str()];
-    let mut next = 0;
-    while next < links.len() {
-        let link = links[next];
-        if document.link(link).is_some_and(|link| link.inertial.is_some()) {
-            let message = format!(
-                "joint \"{}\" moves the mass of link \"{link}\" beside the arm; make it fixed, or \
-                 leave the mass out",
-                joint.name
-            );
-            return Err(document.error(joint.line, message));
-        }
-        links.extend(document.joints_of(link).map(|joint| joint.child.as_str()));
-        next += 1;
-    }
-    Ok(())
+    let has_mass = |link: &&str| document.link(link).is_some_and(|link| link.inertial.is_some());
+    let Some(link) = document.links_from(&joint.child).into_iter().find(has_mass) else {
+        return Ok(());
+    };
+    let message = format!(
+        "joint \"{}\" moves the mass of link \"{link}\" beside the arm; make it fixed, or leave the \
+         mass out",
+        joint.name
+    );
+    Err(document.error(joint.line, message))
 }

@@ -106,6 +106,17 @@ impl Document {
         self.joints.iter().find(|joint| joint.name == name)
     }
 
+    /// A link and all that hang from it, each after its parent.
+    pub(super) fn links_from<'a>(&'a self, link: &'a str) -> Vec<&'a str> {
+        let mut links = vec![link];
+        let mut next = 0;
+        while let Some(link) = links.get(next).copied() {
+            links.extend(self.joints_of(link).map(|joint| joint.child.as_str()));
+            next += 1;
+        }
+        links
+    }
+
     /// The joints whose parent is the link.
     pub(super) fn joints_of<'a>(&'a self, link: &'a str) -> impl Iterator<Item = &'a Joint> {
         self.joints.iter().filter(move |joint| joint.parent == link)
