@@ -170,7 +170,7 @@ fn fastest_stream(case: &Case) -> Option<Value> {
     let loaded = Loaded { model: &case.model, load: &run.load };
     let nodes = path_grid::nodes(&case.model, path, &caps, JERK_INTERVALS);
     let grid = path_grid::grid(loaded, path, &nodes, &caps).ok()?;
-    let freedom = Freedom { joints: Bound::Robot, ..Freedom::none() };
+    let freedom = Freedom { joints: Bound::Robot, ..Freedom::default() };
     let task = Task {
         model: &case.model,
         run,

@@ -115,7 +115,7 @@ fn fastest(case: &Case) -> Option<(PathGrid, PathLimits, Profile)> {
 /// bound of the cost of the jerk limit.
 fn slowness(case: &Case) -> Option<f64> {
     let least = fastest(case)?.2.duration();
-    let freedom = Freedom { joints: Bound::Robot, ..Freedom::none() };
+    let freedom = Freedom { joints: Bound::Robot, ..Freedom::default() };
     let stream = retime(&task(case, &freedom), Goal::Fastest).ok()?;
     (least > SHORTEST).then(|| (stream.duration_s - case.run().settling) / least)
 }
@@ -131,7 +131,7 @@ fn saving(case: &Case, factor: f64) -> Option<Saving> {
     let bound = energy_bound(&grid, &limits, &model, &fastest, time);
     let best = minimize_energy(&grid, &limits, &model, &fastest, time, bound.as_ref());
     let best = best.into_optimum()?;
-    let freedom = Freedom { joints: Bound::Robot, ..Freedom::none() };
+    let freedom = Freedom { joints: Bound::Robot, ..Freedom::default() };
     let stream = retime(&task(case, &freedom), Goal::Exactly(time + run.settling)).ok();
     let realised = stream.map(|retiming| {
         let duration = retiming.stream.duration();
@@ -157,7 +157,7 @@ fn lateness(case: &Case) -> Option<f64> {
     let least = (0..DOF)
         .map(|j| seven_segments((run.end[j] - run.start[j]).abs(), v[j], a[j], jerk[j]))
         .fold(0.0, f64::max);
-    let freedom = Freedom { joints: Bound::Robot, ..Freedom::none() };
+    let freedom = Freedom { joints: Bound::Robot, ..Freedom::default() };
     let fastest = retime(&task(case, &freedom), Goal::Fastest).ok()?;
     (least > SHORTEST).then(|| (fastest.duration_s - run.settling) / least)
 }

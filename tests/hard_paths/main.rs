@@ -33,7 +33,7 @@ fn is_true(case: &Case, reason: &Reason) -> bool {
 #[test]
 fn streams_keep_all_limits_between_their_points_or_say_why_there_is_none() {
     let all: Vec<Case> = cases(&HARD, COUNT).into_iter().chain(cases(&EASY, COUNT)).collect();
-    let freedom = Freedom { joints: Bound::Robot, ..Freedom::none() };
+    let freedom = Freedom { joints: Bound::Robot, ..Freedom::default() };
     let results: Vec<(String, bool)> = all
         .par_iter()
         .flat_map(|case| {

@@ -61,11 +61,11 @@ pub(super) const TURN: Accepts = Accepts::Between(
     "an angle in radians, at most 50, or 628 for an endless joint (180 degrees are 3.14159)",
 );
 /// Numbers from this size on have an exponent in messages.
-const HUGE: f64 = 1e9;
+const EXPONENT_FROM: f64 = 1e9;
 /// Largest bound of a bounded joint \[rad\].
-pub(super) const FARTHEST_TURN: f64 = 50.0;
+pub(super) const MAX_BOUND: f64 = 50.0;
 /// Smallest bound of an endless joint \[rad\].
-const ENDLESS: f64 = 600.0;
+const MIN_ENDLESS_BOUND: f64 = 600.0;
 
 /// One table, read key by key.
 pub(super) struct Fields {
@@ -351,7 +351,11 @@ impl Fields {
         RobotError::Value {
             place: node.place.to_string(),
             key: self.path(key),
-            value: if value.abs() < HUGE { value.to_string() } else { format!("{value:e}") },
+            value: if value.abs() < EXPONENT_FROM {
+                value.to_string()
+            } else {
+                format!("{value:e}")
+            },
             must: accepts.words().into(),
         }
     }
@@ -415,12 +419,12 @@ impl Fields {
 
 /// Whether the bound \[rad\] is possible for a bounded or an endless joint.
 pub(super) fn is_turn(bound: f64) -> bool {
-    bound.abs() <= FARTHEST_TURN || is_endless(bound)
+    bound.abs() <= MAX_BOUND || is_endless(bound)
 }
 
 /// Whether the bound \[rad\] is that of an endless joint.
 pub(super) fn is_endless(bound: f64) -> bool {
-    bound.abs() >= ENDLESS
+    bound.abs() >= MIN_ENDLESS_BOUND
 }
 
 fn per_joint_words(dof: usize) -> String {

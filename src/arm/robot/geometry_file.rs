@@ -14,33 +14,29 @@ impl Geometry {
         joints: Vec<Fields>,
     ) -> Result<Option<Geometry>, RobotError> {
         let words = [("none", Coupling::None), ("parallelogram", Coupling::Parallelogram)];
+        let place = robot.place_of("kinematics");
         let kinematics = robot.part("kinematics", |fields| {
             let opw = fields.part("opw", Opw::read)?;
             let flange = fields.part("flange", pose)?;
             let base = fields.part("base", pose)?;
-            let coupling = fields.choice("coupling", &words)?;
-            Ok((opw, flange, base, coupling.unwrap_or(Coupling::None), fields.place()))
+            Ok((opw, flange, base, fields.choice("coupling", &words)?.unwrap_or_default()))
         })?;
-        let (mut opw, mut flange, mut base, mut coupling) = (None, None, None, Coupling::None);
-        if let Some(kinematics) = kinematics {
-            let place;
-            (opw, flange, base, coupling, place) = kinematics;
-            if opw.is_some() && (!joints.is_empty() || flange.is_some()) {
-                return Err(RobotError::Value {
-                    place,
-                    key: "kinematics.opw".into(),
-                    value: "{…}".into(),
-                    must: "alone: the flange is part of opw, [[joint]] is the other form".into(),
-                });
-            }
-            if coupling == Coupling::Parallelogram && opw.is_none() && joints.len() < 3 {
-                return Err(RobotError::Value {
-                    place,
-                    key: "kinematics.coupling".into(),
-                    value: "\"parallelogram\"".into(),
-                    must: "\"none\" for a robot of fewer than 3 joints".into(),
-                });
-            }
+        let (opw, flange, base, coupling) = kinematics.unwrap_or_default();
+        if opw.is_some() && (!joints.is_empty() || flange.is_some()) {
+            return Err(RobotError::Value {
+                place,
+                key: "kinematics.opw".into(),
+                value: "{…}".into(),
+                must: "alone: the flange is part of opw, [[joint]] is the other form".into(),
+            });
+        }
+        if coupling == Coupling::Parallelogram && opw.is_none() && joints.len() < 3 {
+            return Err(RobotError::Value {
+                place,
+                key: "kinematics.coupling".into(),
+                value: "\"parallelogram\"".into(),
+                must: "\"none\" for a robot of fewer than 3 joints".into(),
+            });
         }
         let base = base.unwrap_or_else(Isometry3::identity);
         if let Some(opw) = opw {

@@ -9,7 +9,7 @@ use super::fields::{Accepts, Fields, LENGTH};
 const ROUNDING: f64 = 1e-9;
 
 /// Largest radius of gyration of a part of a robot \[m\].
-const FARTHEST_MASS: f64 = 5.0;
+const MAX_GYRATION_RADIUS: f64 = 5.0;
 
 /// Masses \[kg\].
 pub(super) const MASS: Accepts = Accepts::Between(0.0, 1e5, "0 or more and at most 100000, in kg");
@@ -46,7 +46,7 @@ impl Link {
             ));
         }
         let radius = (c / self.mass).sqrt();
-        (self.mass > 0.0 && radius > FARTHEST_MASS).then(|| {
+        (self.mass > 0.0 && radius > MAX_GYRATION_RADIUS).then(|| {
             format!(
                 "a moment of {c:.3e} kg m2 puts the {} kg at {radius:.1} m from the axis (kg mm2 \
                  would be a million times more)",

@@ -13,7 +13,7 @@ use super::fields::{Accepts, LENGTH, TURN, is_turn};
 use super::limits::TCP_SPEED;
 use super::link::{Link, MASS};
 use super::load::find as find_robot;
-use super::system_parameters::{Entry, break_off, section};
+use super::system_parameters::{Entry, section, truncation};
 use super::toml_text::{list, pose, quoted};
 
 /// One of the first and one of the last sections of a file written by a controller.
@@ -41,7 +41,7 @@ const HEADER: &str = "MOC:CFG_";
 /// robot; it has several robots and `unit` names none of them.
 pub fn import_moc(file: &str, text: &str, unit: Option<&str>) -> Result<String, RobotError> {
     let configuration = Configuration { file, text };
-    configuration.check_whole()?;
+    configuration.check_complete()?;
     let (index, robot) = configuration.robot(unit)?;
     let kind = configuration.text(&robot, "use_robot_type", "ROBOT")?;
     let model = find_robot(kind).map_err(|error| {
@@ -107,7 +107,7 @@ impl Configuration<'_> {
         RobotError::Configuration { place: format!("{}:{line}", self.file), message }
     }
 
-    fn check_whole(&self) -> Result<(), RobotError> {
+    fn check_complete(&self) -> Result<(), RobotError> {
         let at = |line: usize, message: String| Err(self.error_at(line, message));
         if !self.text.trim_start_matches('\u{feff}').starts_with(HEADER) {
             return at(
@@ -117,14 +117,14 @@ impl Configuration<'_> {
                 ),
             );
         }
-        let broken = break_off(self.text).map(|(line, how)| (line, how.to_owned()));
+        let broken = truncation(self.text).map(|(line, how)| (line, how.to_owned()));
         // A file that starts like one of a controller must also end like one.
         let [begins, ends] = ENDS.map(|name| !section(self.text, name).is_empty());
         let lacks = (begins && !ends)
             .then(|| (self.text.lines().count(), format!("there is no section {}", ENDS[1])));
         if let Some((line, how)) = broken.or(lacks) {
             let message =
-                format!("the file breaks off here ({how}); take it from the backup again");
+                format!("the file is cut off here ({how}); copy it from the backup again");
             return at(line, message);
         }
         for name in READ {

@@ -142,11 +142,11 @@ impl<'a> Along<'a> {
             }
             let by_joint = |j: usize| tau(j) * self.rates[i][j];
             let work: f64 = (0..self.model.dof).map(by_joint).sum();
-            let burnt = match self.model.drive.sharing {
+            let lost = match self.model.drive.sharing {
                 Sharing::Bus => (-work).max(0.0),
                 Sharing::None => (0..self.model.dof).map(|j| (-by_joint(j)).max(0.0)).sum(),
             };
-            work + copper + (1.0 - self.model.drive.regeneration) * burnt
+            work + copper + (1.0 - self.model.drive.regeneration) * lost
         });
         (terms.collect(), torques)
     }
@@ -179,11 +179,11 @@ impl<'a> Along<'a> {
             let tau = &torques[j];
             let of_power = |i: usize| {
                 let rate = self.rates[i][j];
-                let burnt = match self.model.drive.sharing {
+                let lost = match self.model.drive.sharing {
                     Sharing::Bus => braking[i],
                     Sharing::None => tau[i] * rate < 0.0,
                 };
-                let work = if burnt { rate * (1.0 - left) } else { rate };
+                let work = if lost { rate * (1.0 - left) } else { rate };
                 2.0 * of.loss[0] * tau[i] + if self.rests[i] { 0.0 } else { work }
             };
             by_power += self.sums(j, &of_power) * &slopes.joints[j];

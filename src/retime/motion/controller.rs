@@ -79,17 +79,17 @@ pub struct MotionLimits {
 /// The limits of the robot; without accelerations in its file they follow from [`TO_FULL_SPEED_S`].
 pub fn motion_limits(model: &Model) -> MotionLimits {
     let acceleration = match &model.limits.acceleration {
-        Some(list) => limits(Some(list)),
+        Some(list) => joint_limits(Some(list)),
         None => {
-            let speed = limits(model.limits.velocity.as_ref());
+            let speed = joint_limits(model.limits.velocity.as_ref());
             std::array::from_fn(|j| speed[j] / TO_FULL_SPEED_S[j])
         }
     };
-    MotionLimits { acceleration, torque: limits(model.torque_bounds()) }
+    MotionLimits { acceleration, torque: joint_limits(model.torque_bounds()) }
 }
 
 /// One limit per joint, infinite where the list has none.
-pub fn limits(list: Option<&Vec<f64>>) -> Joints {
+pub fn joint_limits(list: Option<&Vec<f64>>) -> Joints {
     let limit = |j: usize| list.and_then(|list| list.get(j)).copied();
     std::array::from_fn(|j| limit(j).unwrap_or(f64::INFINITY))
 }

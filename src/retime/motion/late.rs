@@ -4,7 +4,7 @@
 //! the other points. So the intervals with an excess are lengthened in small steps until no limit
 //! is exceeded.
 
-use super::controller::limits;
+use super::controller::joint_limits;
 use super::sampling::Loaded;
 use super::stream::{Piece, Stream};
 use crate::arm::dynamics::{Data, torque};
@@ -22,13 +22,13 @@ const SLOWEST: f64 = 20.0;
 
 /// The stream as the robot executes it; unchanged if it keeps all limits.
 pub(super) fn within_limits(loaded: Loaded<'_>, stream: Stream) -> Stream {
-    let most = Limits::new(loaded.model);
+    let limits = Limits::new(loaded.model);
     let mut data = Data::new();
     let longest = SLOWEST * stream.duration();
     let mut late = stream;
     for _ in 0..ROUNDS {
         let factors: Vec<f64> =
-            late.pieces().map(|piece| most.longer(loaded, &mut data, &piece)).collect();
+            late.pieces().map(|piece| limits.longer(loaded, &mut data, &piece)).collect();
         if factors.iter().all(|factor| *factor <= 1.0) || late.duration() > longest {
             break;
         }
@@ -53,9 +53,9 @@ struct Limits {
 impl Limits {
     fn new(model: &Model) -> Limits {
         Limits {
-            velocity: limits(model.limits.velocity.as_ref()),
-            acceleration: limits(model.limits.acceleration.as_ref()),
-            torque: limits(model.torque_bounds()),
+            velocity: joint_limits(model.limits.velocity.as_ref()),
+            acceleration: joint_limits(model.limits.acceleration.as_ref()),
+            torque: joint_limits(model.torque_bounds()),
         }
     }
 

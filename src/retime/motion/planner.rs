@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::averaged::Averaged;
 use super::controller::{MotionLimits, Planning};
-use super::leg_times::{TimedLeg, in_time};
+use super::leg_times::{TimedLeg, timed_profile};
 use super::pace::{Pace, pace};
 use super::sampling::{self, Loaded, SpeedCap};
 use super::tcp_limits;
@@ -91,7 +91,7 @@ impl Task<'_> {
         let asked = &self.times[path.legs()];
         let profile = if asked.iter().any(Option::is_some) {
             let legs = self.timed_legs();
-            let profile = in_time(&grid, limits, &legs, fastest).ok_or(NoTiming)?;
+            let profile = timed_profile(&grid, limits, &legs, fastest).ok_or(NoTiming)?;
             exact(profile, &legs)
         } else {
             fastest

@@ -32,7 +32,7 @@ pub fn simulate(
     let execution = execute(program, entry, &mut machine);
     machine.flush();
     machine.lay_out();
-    machine.tell_length();
+    machine.note_limit();
     let about_limits = assumed(model).filter(|_| machine.moved);
     let mut simulation = machine.into_simulation();
     simulation.assumed = [execution.assumed, simulation.assumed].concat();

@@ -68,7 +68,7 @@ pub struct Offset {
 }
 
 /// Lowers the tolerances of the polygon near both ends of a path.
-fn near_stops(places: &mut [Place]) {
+fn tighten_near_stops(places: &mut [Place]) {
     let stops = [0, places.len() - 1].map(|i| places[i].pose.translation.vector);
     for place in places {
         let distances = stops.map(|stop| (place.pose.translation.vector - stop).norm());
@@ -136,7 +136,7 @@ impl Corridor {
             let place = |pose| Place { pose, ceiling, tolerance, polygon, stop_tolerance };
             places.extend(poses.into_iter().map(place));
         }
-        near_stops(&mut places);
+        tighten_near_stops(&mut places);
         Some(Corridor { places, ceilings, end: run.end })
     }
 
@@ -161,10 +161,10 @@ impl Corridor {
 
     /// TCP speed ceilings of all places, smoothed: each lower ceiling is extended by `reach` (m)
     /// to both sides and rises beyond with `acceleration` (m/s²).
-    pub fn eased(&self, reach: f64, acceleration: f64) -> Vec<f64> {
+    pub fn smoothed_ceilings(&self, reach: f64, acceleration: f64) -> Vec<f64> {
         let last = self.places.len() - 1;
         let n = (reach / SPACING).ceil() as usize;
-        let mut eased: Vec<f64> = (0..=last)
+        let mut smoothed: Vec<f64> = (0..=last)
             .map(|i| {
                 let around = i.saturating_sub(n)..=(i + n).min(last);
                 self.places[around].iter().map(|p| p.ceiling.tcp).fold(f64::INFINITY, f64::min)
@@ -176,12 +176,12 @@ impl Corridor {
         };
         let rise = |from: f64, d: f64| (from * from + 2.0 * acceleration * d).sqrt();
         for i in 0..last {
-            eased[i + 1] = eased[i + 1].min(rise(eased[i], step(i)));
+            smoothed[i + 1] = smoothed[i + 1].min(rise(smoothed[i], step(i)));
         }
         for i in (0..last).rev() {
-            eased[i] = eased[i].min(rise(eased[i + 1], step(i)));
+            smoothed[i] = smoothed[i].min(rise(smoothed[i + 1], step(i)));
         }
-        eased
+        smoothed
     }
 
     /// The largest speeds at a place.

@@ -89,11 +89,11 @@ impl<'a> Curve<'a> {
         let shortest = if shortest > 0.0 { shortest } else { reserve };
         let range = (shortest, longest.max(shortest));
         let mut curve = Curve { problem, grid, limits, fast, known: Vec::new(), range };
-        curve.learn(task.run.duration()).then_some(curve)
+        curve.add_point(task.run.duration()).then_some(curve)
     }
 
     /// Computes the energy at a time (s) unless a point is near. Returns whether one was added.
-    pub fn learn(&mut self, time: f64) -> bool {
+    pub fn add_point(&mut self, time: f64) -> bool {
         let least = RESERVE * self.fast.duration() + self.problem.task.run.settling;
         let time = time.clamp(self.range.0, self.range.1).max(least);
         let place = self.known.partition_point(|(known, _)| known.time < time);

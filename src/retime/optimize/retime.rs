@@ -3,7 +3,7 @@
 //! The convex program on the path gives a reference motion. A stream is fitted to it and its
 //! realised motion is checked. If a limit is exceeded, the next attempt has tighter margins.
 
-use super::attempt::{Attempt, Intended};
+use super::attempt::{Attempt, Fit};
 use super::energy_program::{EnergyBound, energy_bound, minimize_energy};
 use super::keep_out;
 use super::margins::{FIRST_DISTANCE, Margins};
@@ -128,14 +128,14 @@ fn on_path(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
             let worth = before - WORTHWHILE * before.abs();
             let retiming = problem
                 .least_energy(time, worth)
-                .or_else(|reason| problem.instead(reason, time))?;
+                .or_else(|reason| problem.or_fastest_slowed(reason, time))?;
             let saves = retiming.energy.energy_j() < task.energy_before.energy_j();
             if saves { Ok(retiming) } else { Err(Reason::NoSaving) }
         }
         Goal::Exactly(time) => {
             problem.least_energy(time, f64::INFINITY).or_else(|reason| match reason {
-                Reason::NoSaving => problem.within(time),
-                reason => problem.instead(reason, time),
+                Reason::NoSaving => problem.fastest_slowed(time),
+                reason => problem.or_fastest_slowed(reason, time),
             })
         }
         Goal::Fastest => problem.least_time(),
@@ -157,19 +157,19 @@ impl RunProblem<'_> {
         let bound = self.bound(budget);
         let mut margins = Margins::first(self.tolerance());
         let mut problem = None;
-        let mut begun: Option<Intended> = None;
+        let mut begun: Option<Fit> = None;
         let mut worst = NEARLY;
         let mut is_tight = false;
         for _ in 0..ATTEMPTS {
-            let intended = begun.take().map_or_else(
+            let fit = begun.take().map_or_else(
                 || {
                     let program = self.least_energy_program(budget, &margins, bound.as_ref());
                     is_tight |= matches!(program, Err(Reason::NoSaving));
-                    program.or_else(|reason| self.as_before(reason, budget, &margins))
+                    program.or_else(|reason| self.fit_original(reason, budget, &margins))
                 },
                 Ok,
             );
-            let outcome = intended.and_then(|intended| self.realise(intended, &margins));
+            let outcome = fit.and_then(|fit| self.realise(fit, &margins));
             match outcome {
                 Ok(attempt) if attempt.check.holds() => {
                     let bound = bound.map(|bound| bound.lower_bound);
@@ -190,7 +190,7 @@ impl RunProblem<'_> {
                         let is_new = margins.edges.is_infinite() && attempt.check.polygon > 1.0;
                         worst = if is_new { f64::INFINITY } else { share };
                         margins.tighten_a_little(&attempt.check);
-                        begun = Some(attempt.intended);
+                        begun = Some(attempt.fit);
                     } else {
                         worst = NEARLY;
                         margins.tighten(&attempt.check);
@@ -212,7 +212,7 @@ impl RunProblem<'_> {
         budget: f64,
         margins: &Margins,
         bound: Option<&EnergyBound>,
-    ) -> Result<Intended, Reason> {
+    ) -> Result<Fit, Reason> {
         let (mut grid, limits) = self.grid(margins, INTERVALS)?;
         let mut fast = fastest_profile(&grid, &limits)?;
         if fast.duration() > budget {
@@ -225,7 +225,7 @@ impl RunProblem<'_> {
         let optimum = minimize_energy(&grid, &limits, &self.model, &fast, budget, bound)
             .into_optimum()
             .ok_or(Reason::NoSaving)?;
-        self.intend(&optimum.profile, budget, margins)
+        self.fit_profile(&optimum.profile, budget, margins)
     }
 
     /// Lower bound of the motion energy on the path in this time at the full limits.
@@ -247,8 +247,8 @@ impl RunProblem<'_> {
             let step = ramp.max(SLOW_STEP * fast.duration());
             for share in RAMP_SHARES {
                 let budget = round_up(fast.duration() + share * step);
-                let intended = self.intend(&fast, budget, &margins);
-                match intended.and_then(|intended| self.realise(intended, &margins)) {
+                let fit = self.fit_profile(&fast, budget, &margins);
+                match fit.and_then(|fit| self.realise(fit, &margins)) {
                     Ok(attempt) if attempt.check.holds() => {
                         return Ok(self.retiming(attempt.stream, None));
                     }
@@ -268,7 +268,7 @@ impl RunProblem<'_> {
     }
 
     /// The fastest stream, slowed to the given time.
-    fn within(&self, time: f64) -> Result<Retiming, Reason> {
+    fn fastest_slowed(&self, time: f64) -> Result<Retiming, Reason> {
         let retiming = self.least_time()?;
         if retiming.duration_s > time + quantum() {
             return Err(Reason::TooShort(retiming.duration_s));
@@ -279,9 +279,9 @@ impl RunProblem<'_> {
     }
 
     /// The same after failed attempts at a stream; other reasons are returned.
-    fn instead(&self, reason: Reason, time: f64) -> Result<Retiming, Reason> {
+    fn or_fastest_slowed(&self, reason: Reason, time: f64) -> Result<Retiming, Reason> {
         match reason {
-            Reason::NoStream(_) => self.within(time).or(Err(reason)),
+            Reason::NoStream(_) => self.fastest_slowed(time).or(Err(reason)),
             other => Err(other),
         }
     }

@@ -91,7 +91,7 @@ impl<'a> RunProblem<'a> {
     }
 
     /// Distance from the path without a noticeable cost in polishing, m.
-    pub(super) fn looseness(&self) -> f64 {
+    pub(super) fn free_distance(&self) -> f64 {
         let moves = self.task.run.moves.iter();
         let free = moves
             .map(|record| self.task.freedom.free_deviation(&record.movement))

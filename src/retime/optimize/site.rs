@@ -60,9 +60,9 @@ pub fn sites(program: &Program, simulation: &Simulation) -> Vec<Site> {
         let reason = eligibility(run, std::mem::take(&mut first))
             .err()
             .or_else(|| places.neighbours(run).err())
-            .or_else(|| sets_on_the_way(simulation, index).then_some(Reason::EarlyOutput))
+            .or_else(|| sets_output_in_motion(simulation, index).then_some(Reason::EarlyOutput))
             .or_else(|| joined.contains(&index).then_some(Reason::FliesOn))
-            .or_else(|| places.flies_on(run).then_some(Reason::FliesOn));
+            .or_else(|| places.ends_in_fly_by(run).then_some(Reason::FliesOn));
         let same_file = head.file == tail.file;
         let span = if same_file { head.to(tail) } else { head };
         let site = sites.entry((head, tail)).or_insert_with(|| Site {
@@ -100,7 +100,7 @@ pub fn sites(program: &Program, simulation: &Simulation) -> Vec<Site> {
 }
 
 /// Whether an output is set during the movements of a run.
-fn sets_on_the_way(simulation: &Simulation, run: usize) -> bool {
+fn sets_output_in_motion(simulation: &Simulation, run: usize) -> bool {
     let before = simulation.events[..run].iter().rev();
     before
         .map_while(|event| match &event.what {
@@ -317,7 +317,7 @@ impl Places {
 
     /// Whether a run ends in a fly-by point without a timed wait after it. A wait for an input that
     /// is already set, or another branch, does not stop the robot.
-    fn flies_on(&self, run: &Run) -> bool {
+    fn ends_in_fly_by(&self, run: &Run) -> bool {
         let Some(last) = run.moves.last().filter(|record| !record.movement.zone.fine) else {
             return false;
         };

@@ -102,7 +102,7 @@ fn shared_time(
         let learnt = curves
             .par_iter_mut()
             .zip(&times)
-            .map(|(curve, time)| curve.as_mut().is_some_and(|curve| curve.learn(*time)));
+            .map(|(curve, time)| curve.as_mut().is_some_and(|curve| curve.add_point(*time)));
         if looks > LOOKS || learnt.filter(|learnt| *learnt).count() == 0 {
             let goals = times.into_iter().map(Goal::Exactly).collect();
             return Some(Plan { goals, shared: Some(shared) });

@@ -100,7 +100,7 @@ impl Known {
 
 /// Accepted ratio of a stated mass to that of ABB robots of the same reach and payload, up or down;
 /// the lightest commercial arms have a fifth.
-const ABSURD: f64 = 15.0;
+const MAX_MASS_RATIO: f64 = 15.0;
 
 /// Checks that the stated masses are possible for an arm of this reach; masses in a wrong unit are
 /// not.
@@ -122,7 +122,7 @@ pub fn check_mass(model: &Model) -> Result<(), RobotError> {
              not known"
         ),
     };
-    let usual = [usual / ABSURD, usual * ABSURD];
+    let usual = [usual / MAX_MASS_RATIO, usual * MAX_MASS_RATIO];
     let [low, high] = usual;
     if let Some(mass) = model.mass.filter(|mass| !(low..=high).contains(mass)) {
         return Err(refused("mass", mass, "the mass of the whole robot", usual));

@@ -33,7 +33,7 @@ impl<'d> Chain<'d> {
                 fixed = placed;
                 continue;
             }
-            is_modelled(document, joint)?;
+            check_modelled(document, joint)?;
             if chain.joints.len() == MAX_DOF {
                 let message = format!(
                     "joint \"{}\" is the eighth moving one of the chain; at most {MAX_DOF} are \
@@ -52,7 +52,7 @@ impl<'d> Chain<'d> {
         }
         chain.flange = fixed;
         for joint in &document.joints {
-            beside(document, &chain, joint)?;
+            check_outside_chain(document, &chain, joint)?;
         }
         Ok(chain)
     }
@@ -152,8 +152,8 @@ fn path<'d>(document: &'d Document, root: &str) -> Result<Vec<&'d Joint>, RobotE
     }
 }
 
-fn is_modelled(document: &Document, joint: &Joint) -> Result<(), RobotError> {
-    is_no_mimic(document, joint)?;
+fn check_modelled(document: &Document, joint: &Joint) -> Result<(), RobotError> {
+    check_no_mimic(document, joint)?;
     if !matches!(joint.kind, Kind::Revolute | Kind::Continuous) {
         let message = format!(
             "joint \"{}\" is neither revolute nor continuous; only turning joints are modelled: \
@@ -165,7 +165,7 @@ fn is_modelled(document: &Document, joint: &Joint) -> Result<(), RobotError> {
     Ok(())
 }
 
-fn is_no_mimic(document: &Document, joint: &Joint) -> Result<(), RobotError> {
+fn check_no_mimic(document: &Document, joint: &Joint) -> Result<(), RobotError> {
     if !joint.is_mimic {
         return Ok(());
     }
@@ -178,8 +178,12 @@ fn is_no_mimic(document: &Document, joint: &Joint) -> Result<(), RobotError> {
 }
 
 /// Checks that a joint outside the chain moves no mass.
-fn beside(document: &Document, chain: &Chain<'_>, joint: &Joint) -> Result<(), RobotError> {
-    is_no_mimic(document, joint)?;
+fn check_outside_chain(
+    document: &Document,
+    chain: &Chain<'_>,
+    joint: &Joint,
+) -> Result<(), RobotError> {
+    check_no_mimic(document, joint)?;
     let of_chain = chain.joints.iter().any(|own| own.name == joint.name);
     if of_chain || joint.kind == Kind::Fixed {
         return Ok(());

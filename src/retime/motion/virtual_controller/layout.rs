@@ -70,10 +70,10 @@ impl VirtualController<'_> {
     }
 
     fn lay_run(&mut self, run: RunDraft, plan: Planned) {
-        let (run, plan) = self.in_time(run, plan);
+        let (run, plan) = self.up_to_time_limit(run, plan);
         let RunDraft { movements, legs, load, .. } = run;
         let Planned { motions, mut pieces, problem, settling_s } = plan;
-        let stands = movements.last().map_or(0.0, |movement| self.stands(movement));
+        let stands = movements.last().map_or(0.0, |movement| self.stop_time(movement));
         if let Some((duration, _)) = pieces.last_mut() {
             *duration += stands;
         }
@@ -141,7 +141,7 @@ impl VirtualController<'_> {
     }
 
     /// Time at a stop point in addition to settling, s.
-    fn stands(&mut self, movement: &Movement) -> f64 {
+    fn stop_time(&mut self, movement: &Movement) -> f64 {
         match movement.stop {
             Stop::Fine => 0.0,
             Stop::Time(time) => time,
