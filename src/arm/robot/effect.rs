@@ -52,7 +52,7 @@ impl EffectParameters {
                     None => (key.clone(), joint),
                 };
                 table.number(&key, Accepts::Finite)?.map(|x| match joint {
-                    Some(joint) => (name, alone(joint, x, dof)),
+                    Some(joint) => (name, Given::one_joint(joint, x, dof)),
                     None => (name, Given::Robot(x)),
                 })
             };
@@ -76,8 +76,11 @@ fn of_one_joint(key: &str, dof: usize) -> Option<(String, usize)> {
     Some((name.to_owned(), joint - 1))
 }
 
-fn alone(joint: usize, value: f64, dof: usize) -> Given {
-    let mut list = vec![0.0; dof];
-    list[joint] = value;
-    Given::Joints(list)
+impl Given {
+    /// A value of one joint, 0 for the others.
+    pub(super) fn one_joint(joint: usize, value: f64, dof: usize) -> Given {
+        let mut list = vec![0.0; dof];
+        list[joint] = value;
+        Given::Joints(list)
+    }
 }

@@ -102,12 +102,7 @@ impl Moments {
             let steps = (moving / STEP).ceil().clamp(STEPS.0, STEPS.1);
             let h = moving / steps;
             let times = (0..steps as usize).flat_map(|i| POINTS.map(|x| h * (i as f64 + x)));
-            let states: Vec<[Joints; 3]> = times
-                .map(|t| {
-                    let state = run.at(t);
-                    [state.q, state.qd, state.qdd]
-                })
-                .collect();
+            let states: Vec<[Joints; 3]> = times.map(|t| run.at(t).list()).collect();
             self.sum(model, &run.load, &states, 0.5 * h);
             self.open_s += moving;
         }

@@ -98,11 +98,10 @@ impl Filling {
             // Gravity torque of the stretched arm with a level upper arm.
             let gravity = GRAVITY * stretched_moment(&self.model);
             let stiffness = BALANCED * gravity / std::f64::consts::FRAC_PI_2;
-            let mut list = vec![0.0; self.model.dof];
-            list[1] = stiffness;
+            let stiffness = Given::one_joint(1, stiffness, self.model.dof);
             self.model.effects.push(EffectParameters {
                 id: "gravity_spring".into(),
-                values: vec![("stiffness".into(), Given::Joints(list))],
+                values: vec![("stiffness".into(), stiffness)],
                 place: "the estimate".into(),
             });
             let source =

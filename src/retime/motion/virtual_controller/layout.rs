@@ -190,11 +190,11 @@ impl VirtualController<'_> {
                 (0.0, WaitBasis::Unknown)
             }
         };
-        if let Some(signal) = &wait.signal {
-            self.asked.insert(signal.to_lowercase());
-        }
-        if let Some(signal) = wait.signal.as_ref().filter(|_| self.waited_last == Waited::Ended) {
-            self.waited.insert(signal.to_lowercase(), begin + length);
+        if let Some(signal) = wait.signal.as_ref().map(|signal| signal.to_lowercase()) {
+            self.asked.insert(signal.clone());
+            if self.waited_last == Waited::Ended {
+                self.waited.insert(signal, begin + length);
+            }
         }
         let duration = (length - self.ahead).max(0.0);
         self.ahead = (self.ahead - length).max(0.0);
