@@ -128,7 +128,7 @@ impl Fields {
         key: &str,
         read: impl FnOnce(&mut Fields) -> Result<T, RobotError>,
     ) -> Result<Option<T>, RobotError> {
-        self.table(key)?.map(|table| self.whole(table, read)).transpose()
+        self.table(key)?.map(|table| self.read_whole(table, read)).transpose()
     }
 
     /// The same for each table of a list.
@@ -138,11 +138,11 @@ impl Fields {
         mut read: impl FnMut(&mut Fields) -> Result<T, RobotError>,
     ) -> Result<Vec<T>, RobotError> {
         let tables = self.tables(key)?.into_iter();
-        tables.map(|table| self.whole(table, &mut read)).collect()
+        tables.map(|table| self.read_whole(table, &mut read)).collect()
     }
 
     /// The same for a given table below this one.
-    pub(super) fn whole<T>(
+    pub(super) fn read_whole<T>(
         &mut self,
         mut table: Fields,
         read: impl FnOnce(&mut Fields) -> Result<T, RobotError>,

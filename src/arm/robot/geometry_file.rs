@@ -44,7 +44,7 @@ impl Geometry {
             let (opw, offset_wrist) = (Some(opw), None);
             return Ok(Some(Geometry { joints, flange, opw, offset_wrist, coupling, base }));
         }
-        let joints = joints.into_iter().map(|table| robot.whole(table, joint));
+        let joints = joints.into_iter().map(|table| robot.read_whole(table, joint));
         let joints = joints.collect::<Result<Vec<_>, _>>()?;
         if joints.is_empty() {
             return Ok(None);

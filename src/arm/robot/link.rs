@@ -111,7 +111,7 @@ pub(super) fn arm_load(
 ) -> Result<(usize, Link), RobotError> {
     let (place, key) = (table.place_of("inertia"), table.path("inertia"));
     let read = |fields: &mut Fields| Ok((fields.joint("joint", dof)?, Link::read(fields)?));
-    let (joint, body) = robot.whole(table, read)?;
+    let (joint, body) = robot.read_whole(table, read)?;
     match body.impossible() {
         None => Ok((joint, body)),
         Some(why) => Err(RobotError::Value {
