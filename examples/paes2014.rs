@@ -123,7 +123,7 @@ fn computed(model: &Model, d: &Measured<'_>, fastest: Point) -> (Point, Vec<Opti
         deviation,
         tcp: Bound::Robot,
         joints: Bound::Robot,
-        ..Freedom::none()
+        ..Freedom::default()
     };
     let (kept, free) = (freedom(0.0), freedom(ANYWHERE));
     let solve = |freedom: &Freedom, goal: Goal| {

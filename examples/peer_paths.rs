@@ -75,7 +75,7 @@ impl Plant for Arm<'_> {
     }
 
     fn torque_limit(&self) -> Joints {
-        motion_limits(&self.0.model, 1.0).torque
+        motion_limits(&self.0.model).torque
     }
 }
 
@@ -122,7 +122,7 @@ fn robot(case: &Case) -> Value {
 }
 
 fn path(case: &Case) -> Value {
-    let limits = motion_limits(&case.model, 1.0);
+    let limits = motion_limits(&case.model);
     let limits = PathLimits::new(limits.acceleration, limits.torque).unwrap();
     let caps = vec![SpeedCap::NONE; case.run().moves.len()];
     let (path, loaded) =
@@ -169,7 +169,7 @@ fn fastest_stream(case: &Case) -> Option<Value> {
     let loaded = Loaded { model: &case.model, load: &run.load };
     let nodes = path_grid::nodes(&case.model, path, &caps, JERK_INTERVALS);
     let grid = path_grid::grid(loaded, path, &nodes, &caps).ok()?;
-    let freedom = Freedom { joints: Bound::Robot, ..Freedom::none() };
+    let freedom = Freedom { joints: Bound::Robot, ..Freedom::default() };
     let stream = retime(&case.task(&freedom), Goal::Fastest).ok()?;
     let ends = grid.ends();
     let nodes: Vec<_> = ends.iter().map(|pair| pair[0]).chain(ends.last().map(|p| p[1])).collect();

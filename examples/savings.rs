@@ -88,7 +88,7 @@ fn quartiles(mut values: Vec<f64>) -> String {
 /// The fastest profile on the path of a case without a jerk limit, with grid and limits.
 fn fastest(case: &Case) -> Option<(PathGrid, PathLimits, Profile)> {
     let (path, run) = (case.path()?, case.run());
-    let limits = motion_limits(&case.model, 1.0);
+    let limits = motion_limits(&case.model);
     let limits = PathLimits::new(limits.acceleration, limits.torque).ok()?;
     let moves = run.moves.iter().map(|record| record.movement.line_speed());
     let caps: Vec<SpeedCap> = moves.map(|tcp| SpeedCap { tcp, ..SpeedCap::NONE }).collect();
@@ -103,7 +103,7 @@ fn fastest(case: &Case) -> Option<(PathGrid, PathLimits, Profile)> {
 /// bound of the cost of the jerk limit.
 fn ratio_without_jerk_limit(case: &Case) -> Option<f64> {
     let least = fastest(case)?.2.duration();
-    let freedom = Freedom { joints: Bound::Robot, ..Freedom::none() };
+    let freedom = Freedom { joints: Bound::Robot, ..Freedom::default() };
     let stream = retime(&case.task(&freedom), Goal::Fastest).ok()?;
     (least > SHORTEST).then(|| (stream.duration_s - case.run().settling) / least)
 }
@@ -119,7 +119,7 @@ fn saving(case: &Case, factor: f64) -> Option<Saving> {
     let bound = energy_bound(&grid, &limits, &model, &fastest, time);
     let best = minimize_energy(&grid, &limits, &model, &fastest, time, bound.as_ref());
     let best = best.into_optimum()?;
-    let freedom = Freedom { joints: Bound::Robot, ..Freedom::none() };
+    let freedom = Freedom { joints: Bound::Robot, ..Freedom::default() };
     let stream = retime(&case.task(&freedom), Goal::Exactly(time + run.settling)).ok();
     let realised = stream.map(|retiming| {
         let duration = retiming.stream.duration();
@@ -145,7 +145,7 @@ fn ratio_with_jerk_limit(case: &Case) -> Option<f64> {
     let least = (0..DOF)
         .map(|j| seven_segments((run.end[j] - run.start[j]).abs(), v[j], a[j], jerk[j]))
         .fold(0.0, f64::max);
-    let freedom = Freedom { joints: Bound::Robot, ..Freedom::none() };
+    let freedom = Freedom { joints: Bound::Robot, ..Freedom::default() };
     let fastest = retime(&case.task(&freedom), Goal::Fastest).ok()?;
     (least > SHORTEST).then(|| (fastest.duration_s - run.settling) / least)
 }

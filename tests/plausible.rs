@@ -42,7 +42,7 @@ fn sums_over_a_motion_give_the_energy_of_each_robot() {
     let draws = Spread::new(&model).draws(&model, ROBOTS);
     for robot in &draws.robots {
         let theirs = account(&robot.applied(&model), &simulation).total;
-        let change = sums.changes(&model, &Changes::of_one(&model, robot))[0];
+        let change = sums.changes(&model, &Changes::from_one(&model, robot))[0];
         for (name, part) in PARTS {
             let exact = part(&theirs) - part(&own.total);
             let found = part(&change);

@@ -31,7 +31,7 @@ fn is_true(case: &Case, reason: &Reason) -> bool {
 #[test]
 fn streams_keep_all_limits_or_the_refusal_has_a_reason() {
     let all: Vec<Case> = cases(&HARD, COUNT).into_iter().chain(cases(&EASY, COUNT)).collect();
-    let freedom = Freedom { joints: Bound::Robot, ..Freedom::none() };
+    let freedom = Freedom { joints: Bound::Robot, ..Freedom::default() };
     let results: Vec<(String, bool)> = all
         .par_iter()
         .flat_map(|case| {

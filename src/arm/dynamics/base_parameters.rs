@@ -63,11 +63,11 @@ impl BaseParameters {
             if factor == 0.0 {
                 continue;
             }
-            let sense = if factor < 0.0 { '-' } else { '+' };
+            let sign = if factor < 0.0 { '-' } else { '+' };
             let name = parameter_name(self.dof, *from);
             let size = (factor.abs() * 1e6).round() / 1e6;
             let factor = if size == 1.0 { String::new() } else { format!("{size} ") };
-            let _ = write!(text, " {sense} {factor}{name}");
+            let _ = write!(text, " {sign} {factor}{name}");
         }
         text
     }

@@ -5,12 +5,13 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::arm::robot::{MAX_DOF, Model};
+use crate::arm::robot::Model;
 
 use super::data::Data;
 use super::joint_matrix::{self, JointMatrix};
 use super::load::Load;
 use super::motor_side::add_rotors;
+use super::rnea::links;
 use super::spatial::{Inertia, Motion};
 
 /// M(q) \[kg m²\] at `q` \[rad\] with `load` at the flange, including rotors. Zero if the robot has
@@ -19,7 +20,7 @@ pub fn crba(model: &Model, data: &mut Data, load: &Load, q: &[f64]) -> JointMatr
     let mut mass = JointMatrix::zeros();
     let Some(loaded) = load.on(model) else { return mass };
     let angles = model.kinematics.to_serial(q);
-    let n = model.links.len().min(model.kinematics.joints.len()).min(MAX_DOF);
+    let n = links(model);
     let mut rotation = Matrix3::identity();
     let mut origin = Vector3::zeros();
     for i in 0..n {

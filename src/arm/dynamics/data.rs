@@ -7,7 +7,7 @@ use crate::arm::robot::MAX_DOF;
 use super::spatial::{Force, Inertia, Motion};
 
 /// Intermediate results, reusable for any robot; no result persists between calls.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Data {
     /// Rotation of each joint frame in its parent frame.
     pub(super) rotation: [Matrix3<f64>; MAX_DOF],
@@ -31,21 +31,6 @@ impl Data {
     /// Fresh scratch memory.
     #[must_use]
     pub fn new() -> Data {
-        Data {
-            rotation: [Matrix3::zeros(); MAX_DOF],
-            axis: [Motion::zero(); MAX_DOF],
-            inertia: [Inertia::zero(); MAX_DOF],
-            wrench: [Force::zero(); MAX_DOF],
-            velocity_slope: [Motion::zero(); MAX_DOF],
-            acceleration_slope: [Motion::zero(); MAX_DOF],
-            turning: [Matrix3::zeros(); MAX_DOF],
-            momentum: [Vector3::zeros(); MAX_DOF],
-        }
-    }
-}
-
-impl Default for Data {
-    fn default() -> Data {
-        Data::new()
+        Data::default()
     }
 }

@@ -21,6 +21,7 @@ use super::data::Data;
 use super::joint_matrix::{self, JointMatrix};
 use super::load::Load;
 use super::motor_side::{add_rotors, rotor_torques};
+use super::rnea::links;
 use super::spatial::{Force, Inertia, Motion};
 
 /// Inverse dynamics with its derivatives; rows are torques.
@@ -56,11 +57,11 @@ pub fn rnea_derivatives(
     let Some(loaded) = load.on(model) else { return out };
     let geometry = &model.kinematics;
     let [angles, rates, accelerations] = [q, qd, qdd].map(|values| geometry.to_serial(values));
-    let n = model.links.len().min(geometry.joints.len()).min(MAX_DOF);
+    let n = links(model);
 
     let mut rotation = Matrix3::identity();
     let mut origin = Vector3::zeros();
-    let mut v = Motion::zero();
+    let mut v = Motion::default();
     let mut a = Motion { angular: Vector3::zeros(), linear: model.kinematics.up() * GRAVITY };
     for i in 0..n {
         let joint = &geometry.joints[i];

@@ -18,31 +18,16 @@ use super::motor_side::{joint_torques, motor_rates, motor_torques};
 /// through the gears. Exact: s = sign(q̇) with sign(0) = 0.
 #[must_use]
 pub fn friction(model: &Model, qd: &[f64], load_torque: &[f64; MAX_DOF]) -> [f64; MAX_DOF] {
-    law(model, qd, load_torque, |_, velocity| sense(velocity))
+    friction_with_signs(model, qd, load_torque, &motor_rates(model, qd).map(sign))
 }
 
 /// The same with given signs of the motor speeds, 0 for a motor at rest.
 #[must_use]
-pub fn friction_of_senses(
+pub fn friction_with_signs(
     model: &Model,
     qd: &[f64],
     load_torque: &[f64; MAX_DOF],
-    senses: &[f64; MAX_DOF],
-) -> [f64; MAX_DOF] {
-    law(model, qd, load_torque, |joint, _| senses[joint])
-}
-
-/// The sign of a velocity: 1, −1, or 0 at 0.
-#[must_use]
-pub fn sense(velocity: f64) -> f64 {
-    if velocity == 0.0 { 0.0 } else { velocity.signum() }
-}
-
-fn law(
-    model: &Model,
-    qd: &[f64],
-    load_torque: &[f64; MAX_DOF],
-    sense_of: impl Fn(usize, f64) -> f64,
+    signs: &[f64; MAX_DOF],
 ) -> [f64; MAX_DOF] {
     let friction = &model.friction;
     let rates = motor_rates(model, qd);
@@ -50,7 +35,7 @@ fn law(
     let mut tau = [0.0; MAX_DOF];
     for joint in 0..model.dof {
         let velocity = rates[joint];
-        let s = sense_of(joint, velocity);
+        let s = signs[joint];
         let mut dry = friction.coulomb[joint];
         if let Some(law) = &friction.stribeck {
             dry += law.stiction[joint] * (-(velocity / law.velocity[joint]).powi(2)).exp();
@@ -67,4 +52,10 @@ fn law(
         }
     }
     joint_torques(model, tau)
+}
+
+/// The sign of a velocity: 1, −1, or 0 at 0.
+#[must_use]
+pub fn sign(velocity: f64) -> f64 {
+    if velocity == 0.0 { 0.0 } else { velocity.signum() }
 }

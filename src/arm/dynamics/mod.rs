@@ -32,7 +32,7 @@ pub use data::Data;
 pub use derivatives::{Derivatives, rnea_derivatives};
 pub use energy::{kinetic_energy, potential_energy};
 pub use forward::forward_dynamics;
-pub use friction::{friction, friction_of_senses, sense};
+pub use friction::{friction, friction_with_signs, sign};
 pub use joint_matrix::JointMatrix;
 pub use laws::laws;
 pub use load::Load;

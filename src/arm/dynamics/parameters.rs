@@ -4,7 +4,7 @@ use nalgebra::Matrix3;
 
 use crate::arm::robot::{Link, Model};
 
-use super::friction::sense;
+use super::friction::sign;
 use super::load::Load;
 
 /// Number of parameters of a rigid body.
@@ -70,5 +70,5 @@ pub fn parameters(model: &Model, load: &Load) -> Vec<f64> {
 
 /// Regressor entries of the joint parameters at the motor speed `qd` and acceleration `qdd`.
 pub(super) fn joint_row(qd: f64, qdd: f64) -> [f64; JOINT] {
-    [qdd, qd, sense(qd), 1.0]
+    [qdd, qd, sign(qd), 1.0]
 }

@@ -11,7 +11,7 @@ use crate::arm::robot::{Coupling, GRAVITY, MAX_DOF, Model};
 use super::parameters::RIGID;
 
 /// One row of ten numbers per joint and link.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Regressor {
     /// `rows[joint][link]`: joint torque \[Nm\] per unit of each link parameter, in the order of
     /// [`link_parameters`](super::link_parameters).
@@ -22,13 +22,7 @@ impl Regressor {
     /// All zero.
     #[must_use]
     pub fn new() -> Regressor {
-        Regressor { rows: [[[0.0; RIGID]; MAX_DOF]; MAX_DOF] }
-    }
-}
-
-impl Default for Regressor {
-    fn default() -> Regressor {
-        Regressor::new()
+        Regressor::default()
     }
 }
 

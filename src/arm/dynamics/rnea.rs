@@ -83,7 +83,7 @@ pub fn gravity(model: &Model, data: &mut Data, load: &Load, q: &[f64]) -> [f64; 
 }
 
 /// Number of links that carry mass.
-fn links(model: &Model) -> usize {
+pub(super) fn links(model: &Model) -> usize {
     model.links.len().min(model.kinematics.joints.len()).min(MAX_DOF)
 }
 

@@ -7,21 +7,21 @@ use std::ops::{Add, AddAssign, Mul};
 use nalgebra::{Matrix3, Vector3};
 
 /// Velocity or acceleration; the linear part is that of the body-fixed point at the origin.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Motion {
     pub(super) angular: Vector3<f64>,
     pub(super) linear: Vector3<f64>,
 }
 
 /// Force, and moment about the origin.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Force {
     pub(super) moment: Vector3<f64>,
     pub(super) force: Vector3<f64>,
 }
 
 /// Inertia of one body or of several rigidly connected ones.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Inertia {
     pub(super) mass: f64,
     /// Mass times centre of mass.
@@ -31,10 +31,6 @@ pub(super) struct Inertia {
 }
 
 impl Motion {
-    pub(super) fn zero() -> Motion {
-        Motion { angular: Vector3::zeros(), linear: Vector3::zeros() }
-    }
-
     /// self × other.
     #[inline]
     pub(super) fn cross(&self, other: &Motion) -> Motion {
@@ -78,12 +74,6 @@ impl Mul<f64> for Motion {
     }
 }
 
-impl Force {
-    pub(super) fn zero() -> Force {
-        Force { moment: Vector3::zeros(), force: Vector3::zeros() }
-    }
-}
-
 impl Add for Force {
     type Output = Force;
 
@@ -101,10 +91,6 @@ impl AddAssign for Force {
 }
 
 impl Inertia {
-    pub(super) fn zero() -> Inertia {
-        Inertia { mass: 0.0, first: Vector3::zeros(), about_origin: Matrix3::zeros() }
-    }
-
     /// A body of inertia `about_com` (base frame axes) with its centre of mass at `com`.
     #[inline]
     pub(super) fn of_body(mass: f64, com: &Vector3<f64>, about_com: &Matrix3<f64>) -> Inertia {

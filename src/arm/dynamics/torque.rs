@@ -3,7 +3,7 @@
 use crate::arm::robot::{MAX_DOF, Model};
 
 use super::data::Data;
-use super::friction::{friction, sense};
+use super::friction::{friction_with_signs, sign};
 use super::laws::laws;
 use super::load::Load;
 use super::motor_side::{motor_rates, rotor_torques};
@@ -44,10 +44,10 @@ pub fn torque_each<const N: usize>(
 
 /// The torques from the rigid-body torques `rigid`.
 fn through_gears(model: &Model, [q, qd, qdd]: [&[f64]; 3], mut rigid: [f64; MAX_DOF]) -> Torque {
-    let mut friction = friction(model, qd, &rigid);
+    let signs = motor_rates(model, qd).map(sign);
+    let mut friction = friction_with_signs(model, qd, &rigid, &signs);
     if !model.laws.is_empty() {
-        let senses = motor_rates(model, qd).map(sense);
-        let [between, rubbing] = laws(model, f64::INFINITY, [q, qd], &rigid, &senses);
+        let [between, rubbing] = laws(model, f64::INFINITY, [q, qd], &rigid, &signs);
         for joint in 0..model.dof {
             rigid[joint] += between[joint];
             friction[joint] += rubbing[joint];

@@ -3,8 +3,8 @@
 use std::sync::{Arc, OnceLock};
 
 use crate::arm::dynamics::{
-    Data, Load, apparent_torques, friction_of_senses, laws, motor_rates, motor_torques,
-    rigid_bodies, rnea, sense,
+    Data, Load, apparent_torques, friction_with_signs, laws, motor_rates, motor_torques,
+    rigid_bodies, rnea, sign,
 };
 use crate::arm::robot::{LawState, MAX_DOF, Model};
 
@@ -88,7 +88,7 @@ impl<'a> Motion<'a> {
             for joint in 0..n {
                 motion.rates[joint].push(rates[joint]);
                 let resting = rates[joint].abs() <= rest.get(joint).copied().unwrap_or(0.0);
-                motion.senses[joint].push(if resting { 0.0 } else { sense(rates[joint]) });
+                motion.senses[joint].push(if resting { 0.0 } else { sign(rates[joint]) });
                 motion.gear[joint].push(gear[joint]);
             }
         }
@@ -178,11 +178,11 @@ impl<'a> Motion<'a> {
             if model.wrist.coupling != self.model.wrist.coupling {
                 // With another coupling motor 6 reverses at other times, where the computed sign is
                 // more likely than 0.
-                senses[n - 1] = sense(motor_rates(model, &qd[..n])[n - 1]);
+                senses[n - 1] = sign(motor_rates(model, &qd[..n])[n - 1]);
             }
             let tau = rnea(model, &mut data, load, &q[..n], &qd[..n], &qdd[..n]);
             let gear = rigid_bodies(model, &mut data, load, &q[..n], &qd[..n], &qdd[..n]);
-            let friction = friction_of_senses(model, &qd[..n], &gear, &senses);
+            let friction = friction_with_signs(model, &qd[..n], &gear, &senses);
             let state = [&q[..n], &qd[..n]];
             let [between, rubbing] = laws(model, self.t[row], state, &gear, &senses);
             let apparent = apparent_torques(model, &qd[..n], &qdd[..n]);

@@ -191,11 +191,11 @@ fn wrist(
     if sin < WRIST_SINGULAR {
         // θ6 = sum ∓ θ4, upper sign for θ5 = 0, lower for θ5 = π.
         let sum = r.m21.atan2(r.m22);
-        let sense = if r.m33 > 0.0 { -1.0 } else { 1.0 };
+        let sign = if r.m33 > 0.0 { -1.0 } else { 1.0 };
         for (theta5, theta4) in [(theta5, 0.0), (-theta5, PI)] {
-            let theta6 = sum + sense * theta4;
+            let theta6 = sum + sign * theta4;
             let q = to_joints(model, opw, [theta1, theta2, theta3, theta4, theta5, theta6]);
-            let slope = -sense * opw.signs[3] * opw.signs[5];
+            let slope = -sign * opw.signs[3] * opw.signs[5];
             push(q, Some(Locked { offset: q[5] + slope * q[3], slope }));
         }
         return;

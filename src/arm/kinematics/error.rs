@@ -5,11 +5,11 @@ use thiserror::Error;
 use super::conf::Conf;
 
 /// Angles from this size on have an exponent in messages \[degrees\].
-const HUGE: f64 = 1e9;
+const EXPONENT_FROM: f64 = 1e9;
 
 fn degrees(angle: f64) -> String {
     let degrees = angle.to_degrees();
-    if degrees.abs() < HUGE { format!("{degrees:.3}") } else { format!("{degrees:.3e}") }
+    if degrees.abs() < EXPONENT_FROM { format!("{degrees:.3}") } else { format!("{degrees:.3e}") }
 }
 
 /// A joint angle outside its range.

@@ -21,26 +21,26 @@ const STARTS: u32 = 160;
 /// Largest number of steps per start.
 const STEPS: usize = 80;
 /// Pose error at convergence \[m\] and \[rad\].
-const MET: f64 = 1e-11;
+const CONVERGED: f64 = 1e-11;
 /// Accepted pose error after stagnation, at singular poses.
-const NEARLY_MET: f64 = 1e-9;
+const ACCEPTED: f64 = 1e-9;
 /// Angle difference below which two solutions are equal \[rad\].
 const SAME: f64 = 1e-5;
 
 /// The solution of the pose reached from `start`, if the steps converge.
 pub(super) fn refine(model: &Model, pose: &Isometry3<f64>, start: &[f64; 6]) -> Option<[f64; 6]> {
     let mut q = *start;
-    let mut error = miss(model, pose, &q);
+    let mut error = pose_error(model, pose, &q);
     let mut damping = 1e-3;
     for _ in 0..STEPS {
-        if error.norm() < MET {
+        if error.norm() < CONVERGED {
             break;
         }
         let j = jacobian(model, &q, &Isometry3::identity());
         let normal = j * j.transpose() + Matrix6::identity() * (damping * error.norm().min(1.0));
         let step = j.transpose() * normal.cholesky()?.solve(&error);
         let next: [f64; 6] = std::array::from_fn(|i| q[i] + step[i].clamp(-0.5, 0.5));
-        let left = miss(model, pose, &next);
+        let left = pose_error(model, pose, &next);
         if left.norm() < error.norm() {
             (q, error) = (next, left);
             damping = (damping * 0.3).max(1e-9);
@@ -51,7 +51,7 @@ pub(super) fn refine(model: &Model, pose: &Isometry3<f64>, start: &[f64; 6]) -> 
             }
         }
     }
-    (error.norm() < NEARLY_MET).then_some(q)
+    (error.norm() < ACCEPTED).then_some(q)
 }
 
 /// The found solutions of the pose, each angle in (−π, π].
@@ -61,14 +61,14 @@ pub(super) fn solutions(model: &Model, pose: &Isometry3<f64>) -> Vec<[f64; 6]> {
     for n in 1..=STARTS {
         let start = BASES.map(|base| PI * (2.0 * radical_inverse(n, base) - 1.0));
         if let Some(q) = refine(model, pose, &start) {
-            add(&mut found, &q);
+            add_if_new(&mut found, &q);
         }
     }
     found
 }
 
 /// Adds a new solution.
-pub(super) fn add(found: &mut Vec<[f64; 6]>, q: &[f64; 6]) {
+pub(super) fn add_if_new(found: &mut Vec<[f64; 6]>, q: &[f64; 6]) {
     let same = |known: &[f64; 6]| {
         known.iter().zip(q).all(|(a, b)| {
             let d = (a - b).rem_euclid(TAU);
@@ -81,7 +81,7 @@ pub(super) fn add(found: &mut Vec<[f64; 6]>, q: &[f64; 6]) {
 }
 
 /// Error of the pose at `q`: displacement \[m\] over rotation vector \[rad\], in the base frame.
-fn miss(model: &Model, pose: &Isometry3<f64>, q: &[f64; 6]) -> Vector6<f64> {
+fn pose_error(model: &Model, pose: &Isometry3<f64>, q: &[f64; 6]) -> Vector6<f64> {
     let now = fk(model, q);
     let linear = pose.translation.vector - now.translation.vector;
     let angular = (pose.rotation * now.rotation.inverse()).scaled_axis();

@@ -12,7 +12,7 @@ use nalgebra::{Isometry3, Rotation3, UnitQuaternion, Vector3};
 use crate::arm::robot::{Joint, Model, OffsetWrist};
 
 use super::closed_form::{Arm, facings, forearm, to_joints};
-use super::numeric::{add, refine};
+use super::numeric::{add_if_new, refine};
 
 /// Samples of q6 over a full turn.
 const PLACES: u32 = 720;
@@ -34,7 +34,7 @@ pub(super) fn solutions(
     let mut try_at = |q6: f64, which: usize| {
         let start = search.place(q6).arms[which].map(|(arm, _)| search.joints(&arm, q6));
         if let Some(q) = start.and_then(|start| refine(model, pose, &start)) {
-            add(&mut found, &q);
+            add_if_new(&mut found, &q);
         }
     };
     for which in 0..ARMS {
@@ -170,10 +170,10 @@ impl<'a> Search<'a> {
         self.place(from)
     }
 
-    /// The minimum of the cosine times `sense` between two places, by ternary search.
-    fn least(&self, a: &Place, b: &Place, which: usize, sense: f64) -> Place {
+    /// The minimum of the cosine times `sign` between two places, by ternary search.
+    fn least(&self, a: &Place, b: &Place, which: usize, sign: f64) -> Place {
         let size =
-            |q6: f64| self.place(q6).arms[which].map_or(f64::INFINITY, |(_, cos)| sense * cos);
+            |q6: f64| self.place(q6).arms[which].map_or(f64::INFINITY, |(_, cos)| sign * cos);
         let (mut from, mut to) = (a.q6, b.q6);
         for _ in 0..HALVINGS {
             let third = (to - from) / 3.0;

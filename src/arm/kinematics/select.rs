@@ -107,9 +107,10 @@ pub fn ik_near(
 fn with_conf(model: &Model, branch: &Branch, conf: Conf) -> Option<(f64, [f64; 6])> {
     let mut excess = 0.0;
     if model.kinematics.coupling == Coupling::None {
-        excess += misses(conf.cfx & 4 != 0, branch.back, f64::INFINITY)?;
-        excess += misses(conf.cfx & 2 != 0, branch.elbow.sin() < 0.0, branch.elbow.sin().abs())?;
-        excess += misses(conf.cfx & 1 != 0, branch.q[4] < 0.0, branch.q[4].abs())?;
+        excess += border_distance(conf.cfx & 4 != 0, branch.back, f64::INFINITY)?;
+        excess +=
+            border_distance(conf.cfx & 2 != 0, branch.elbow.sin() < 0.0, branch.elbow.sin().abs())?;
+        excess += border_distance(conf.cfx & 1 != 0, branch.q[4] < 0.0, branch.q[4].abs())?;
     }
     let mut q = into_limits(model, branch.q);
     if let Some(locked) = branch.locked {
@@ -142,7 +143,7 @@ fn locked_fourth(locked: &Locked, conf: Conf) -> f64 {
 }
 
 /// 0 for equal bits, the distance to the border if it is small, otherwise `None`.
-fn misses(asked: bool, found: bool, to_border: f64) -> Option<f64> {
+fn border_distance(asked: bool, found: bool, to_border: f64) -> Option<f64> {
     if asked == found { Some(0.0) } else { (to_border <= EDGE).then_some(to_border) }
 }
 

@@ -119,7 +119,8 @@ pub(super) fn document(name: &str) -> Result<Node, RobotError> {
 fn suggestion(name: &str, asked: &Name) -> Option<&'static str> {
     // First the nearest type, then the nearest numbers of this type.
     let kind = nearest_kind(asked, names().map(Name::parse))?;
-    let written = [name.to_owned(), asked.written(), asked.reversed()];
+    let [in_order, reversed] = asked.spellings();
+    let written = [name.to_owned(), in_order, reversed];
     let of_kind: Vec<&str> = names().filter(|full| Name::parse(full).kind() == kind).collect();
     written
         .iter()

@@ -2,7 +2,6 @@
 
 use super::error::RobotError;
 use super::fields::{Accepts, Fields};
-use super::provenance::Origin;
 
 /// Times of the planner \[s\].
 const PLANNER_TIME: Accepts =
@@ -27,20 +26,14 @@ pub struct Controller {
 }
 
 impl Controller {
-    pub(super) fn read(
-        mut fields: Fields,
-        dof: usize,
-        origins: &mut Vec<Origin>,
-    ) -> Result<Controller, RobotError> {
-        let controller = Controller {
+    pub(super) fn read(fields: &mut Fields, dof: usize) -> Result<Controller, RobotError> {
+        Ok(Controller {
             friction_level: fields.per_joint("friction_level", dof, Accepts::NonNegative)?,
             ramp_s: fields.number("ramp_s", PLANNER_TIME)?,
             ramp_core: fields.number("ramp_core", Accepts::Share)?,
             closing: fields.number("closing", Accepts::Share)?,
             settling_s: fields.number("settling_s", PLANNER_TIME)?,
             interpolation_s: fields.number("interpolation_s", Accepts::Positive)?,
-        };
-        origins.extend(fields.finish()?);
-        Ok(controller)
+        })
     }
 }

@@ -2,23 +2,23 @@
 
 use super::error::RobotError;
 use super::fields::{Accepts, Fields};
-use super::provenance::Origin;
 
 /// Brake times \[s\].
 const BRAKE_TIME: Accepts =
     Accepts::Between(0.0, 10.0, "0 or more and at most 10, in s (not milliseconds)");
 
 /// Use of the negative mechanical power of a joint.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sharing {
     /// It is lost at its axis.
+    #[default]
     None,
     /// Other axes use it through the common DC bus.
     Bus,
 }
 
-/// The drive unit.
-#[derive(Clone, Debug, PartialEq)]
+/// The drive unit; by default without power and losses.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Drive {
     /// Power of controller and drives with motors on, without holding power and brake coils \[W\].
     pub base_w: f64,
@@ -29,19 +29,13 @@ pub struct Drive {
 }
 
 impl Drive {
-    pub(super) fn lossless() -> Drive {
-        Drive { base_w: 0.0, sharing: Sharing::None, regeneration: 0.0 }
-    }
-
-    pub(super) fn read(mut fields: Fields, origins: &mut Vec<Origin>) -> Result<Drive, RobotError> {
+    pub(super) fn read(fields: &mut Fields) -> Result<Drive, RobotError> {
         let words = [("none", Sharing::None), ("bus", Sharing::Bus)];
-        let drive = Drive {
+        Ok(Drive {
             base_w: fields.number("base_w", Accepts::NonNegative)?.unwrap_or(0.0),
-            sharing: fields.choice("sharing", &words)?.unwrap_or(Sharing::None),
+            sharing: fields.choice("sharing", &words)?.unwrap_or_default(),
             regeneration: fields.number("regeneration", Accepts::Share)?.unwrap_or(0.0),
-        };
-        origins.extend(fields.finish()?);
-        Ok(drive)
+        })
     }
 }
 
@@ -59,23 +53,17 @@ pub struct Brakes {
 }
 
 impl Brakes {
-    pub(super) fn read(
-        mut fields: Fields,
-        origins: &mut Vec<Origin>,
-    ) -> Result<Brakes, RobotError> {
-        let energy = fields.number("energy_per_release_j", Accepts::NonNegative)?;
-        let release = fields.number("release_s", BRAKE_TIME)?;
-        let engage = fields.number("engage_s", BRAKE_TIME)?;
-        let power = fields.number("power_released_w", Accepts::NonNegative)?;
+    pub(super) fn read(fields: &mut Fields) -> Result<Brakes, RobotError> {
         // Missing values have no origin and are estimated (`prior`).
-        let brakes = Brakes {
-            energy_per_release_j: energy.unwrap_or(0.0),
-            release_s: release.unwrap_or(0.0),
-            engage_s: engage.unwrap_or(0.0),
-            power_released_w: power.unwrap_or(0.0),
+        let mut number = |key: &str, accepts: Accepts| -> Result<f64, RobotError> {
+            Ok(fields.number(key, accepts)?.unwrap_or(0.0))
         };
-        origins.extend(fields.finish()?);
-        Ok(brakes)
+        Ok(Brakes {
+            energy_per_release_j: number("energy_per_release_j", Accepts::NonNegative)?,
+            release_s: number("release_s", BRAKE_TIME)?,
+            engage_s: number("engage_s", BRAKE_TIME)?,
+            power_released_w: number("power_released_w", Accepts::NonNegative)?,
+        })
     }
 }
 
@@ -91,13 +79,8 @@ impl Standstill {
         Standstill { holding_w: vec![0.0; dof] }
     }
 
-    pub(super) fn read(
-        mut fields: Fields,
-        dof: usize,
-        origins: &mut Vec<Origin>,
-    ) -> Result<Standstill, RobotError> {
+    pub(super) fn read(fields: &mut Fields, dof: usize) -> Result<Standstill, RobotError> {
         let holding = fields.per_joint("holding_w", dof, Accepts::NonNegative)?;
-        origins.extend(fields.finish()?);
         Ok(holding.map_or_else(|| Standstill::none(dof), |holding_w| Standstill { holding_w }))
     }
 }

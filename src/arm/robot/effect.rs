@@ -6,7 +6,6 @@
 
 use super::error::RobotError;
 use super::fields::{Accepts, Fields};
-use super::provenance::Origin;
 
 /// The parameters of one effect.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,43 +30,42 @@ pub enum Given {
 impl EffectParameters {
     /// The tables of `[effects]`, by id.
     pub(super) fn read_all(
-        mut fields: Fields,
+        fields: &mut Fields,
         dof: usize,
-        origins: &mut Vec<Origin>,
     ) -> Result<Vec<EffectParameters>, RobotError> {
         let mut effects = Vec::new();
         for id in fields.keys() {
-            let Some(mut table) = fields.table(&id)? else { continue };
-            let joint = if table.has("joint") { Some(table.joint("joint", dof)?) } else { None };
-            let mut values: Vec<(String, Given)> = Vec::new();
-            for key in table.keys() {
-                let given = if table.is_list(&key) {
-                    table
-                        .per_joint(&key, dof, Accepts::Finite)?
-                        .map(|list| (key, Given::Joints(list)))
-                } else if let Some((name, of)) = of_one_joint(&key, dof) {
-                    table.number(&key, Accepts::Finite)?.map(|x| (name, alone(of, x, dof)))
-                } else {
-                    table.number(&key, Accepts::Finite)?.map(|x| match joint {
-                        Some(of) => (key, alone(of, x, dof)),
-                        None => (key, Given::Robot(x)),
-                    })
-                };
-                let Some((name, given)) = given else { continue };
-                let before = values.iter_mut().find(|(known, _)| *known == name);
-                match (before, given) {
-                    (Some((_, Given::Joints(sum))), Given::Joints(list)) => {
-                        sum.iter_mut().zip(list).for_each(|(sum, value)| *sum += value);
-                    }
-                    (_, given) => values.push((name, given)),
-                }
-            }
-            let place = table.place();
-            origins.extend(table.finish()?);
-            effects.push(EffectParameters { id, values, place });
+            effects.extend(fields.part(&id, |table| EffectParameters::read(&id, table, dof))?);
         }
-        origins.extend(fields.finish()?);
         Ok(effects)
+    }
+
+    fn read(id: &str, table: &mut Fields, dof: usize) -> Result<EffectParameters, RobotError> {
+        let joint = if table.has("joint") { Some(table.joint("joint", dof)?) } else { None };
+        let mut values: Vec<(String, Given)> = Vec::new();
+        for key in table.keys() {
+            let given = if table.is_list(&key) {
+                table.per_joint(&key, dof, Accepts::Finite)?.map(|list| (key, Given::Joints(list)))
+            } else {
+                let (name, joint) = match of_one_joint(&key, dof) {
+                    Some((name, joint)) => (name, Some(joint)),
+                    None => (key.clone(), joint),
+                };
+                table.number(&key, Accepts::Finite)?.map(|x| match joint {
+                    Some(joint) => (name, Given::one_joint(joint, x, dof)),
+                    None => (name, Given::Robot(x)),
+                })
+            };
+            let Some((name, given)) = given else { continue };
+            let before = values.iter_mut().find(|(known, _)| *known == name);
+            match (before, given) {
+                (Some((_, Given::Joints(sum))), Given::Joints(list)) => {
+                    sum.iter_mut().zip(list).for_each(|(sum, value)| *sum += value);
+                }
+                (_, given) => values.push((name, given)),
+            }
+        }
+        Ok(EffectParameters { id: id.to_owned(), values, place: table.place() })
     }
 }
 
@@ -78,8 +76,11 @@ fn of_one_joint(key: &str, dof: usize) -> Option<(String, usize)> {
     Some((name.to_owned(), joint - 1))
 }
 
-fn alone(joint: usize, value: f64, dof: usize) -> Given {
-    let mut list = vec![0.0; dof];
-    list[joint] = value;
-    Given::Joints(list)
+impl Given {
+    /// A value of one joint, 0 for the others.
+    pub(super) fn one_joint(joint: usize, value: f64, dof: usize) -> Given {
+        let mut list = vec![0.0; dof];
+        list[joint] = value;
+        Given::Joints(list)
+    }
 }

@@ -19,8 +19,8 @@ pub enum RobotError {
     },
     /// A robot without published lengths.
     #[error(
-        "the geometry of the robot \"{name}\" is not published, so that the catalogue lacks it; give \
-         a robot TOML or URDF file that has it"
+        "the catalogue does not contain the robot \"{name}\", because its geometry is not published; \
+         give a robot TOML or URDF file"
     )]
     Unpublished {
         /// The requested name.
@@ -149,7 +149,7 @@ pub enum RobotError {
     },
     /// An effect without a law in the model.
     #[error(
-        "{place}: no law for the effect \"{id}\"{}; remove [effects.{id}], laws are known of {}",
+        "{place}: the effect \"{id}\" is not known{}; correct it or remove [effects.{id}]; known effects: {}",
         .suggestion.as_ref().map_or(String::new(), |s| format!(", did you mean \"{s}\"?")),
         .known.join(", ")
     )]

@@ -61,11 +61,11 @@ pub(super) const TURN: Accepts = Accepts::Between(
     "an angle in radians, at most 50, or 628 for an endless joint (180 degrees are 3.14159)",
 );
 /// Numbers from this size on have an exponent in messages.
-const HUGE: f64 = 1e9;
+const EXPONENT_FROM: f64 = 1e9;
 /// Largest bound of a bounded joint \[rad\].
-const FARTHEST_TURN: f64 = 50.0;
+pub(super) const MAX_BOUND: f64 = 50.0;
 /// Smallest bound of an endless joint \[rad\].
-const ENDLESS: f64 = 600.0;
+const MIN_ENDLESS_BOUND: f64 = 600.0;
 
 /// One table, read key by key.
 pub(super) struct Fields {
@@ -74,6 +74,8 @@ pub(super) struct Fields {
     entries: BTreeMap<String, Node>,
     known: Vec<String>,
     origins: Vec<Origin>,
+    /// The origins of the tables below this one that were read.
+    inner: Vec<Origin>,
 }
 
 impl Fields {
@@ -86,6 +88,7 @@ impl Fields {
                 entries,
                 known: Vec::new(),
                 origins: Vec::new(),
+                inner: Vec::new(),
             }),
             other => Err(RobotError::Type {
                 place: node.place.to_string(),
@@ -106,7 +109,7 @@ impl Fields {
         self.entries.get(key).map_or_else(|| self.place(), |node| node.place.to_string())
     }
 
-    /// The origins of the read keys; an error if a key was not read.
+    /// The origins of the read keys, first those of the tables below; an error if a key was not read.
     pub(super) fn finish(self) -> Result<Vec<Origin>, RobotError> {
         if let Some((key, node)) = self.entries.first_key_value() {
             return Err(RobotError::UnknownKey {
@@ -116,7 +119,37 @@ impl Fields {
                 known: self.known,
             });
         }
-        Ok(self.origins)
+        Ok([self.inner, self.origins].concat())
+    }
+
+    /// What `read` makes of a table below this one, if it is present. All its keys must be read.
+    pub(super) fn part<T>(
+        &mut self,
+        key: &str,
+        read: impl FnOnce(&mut Fields) -> Result<T, RobotError>,
+    ) -> Result<Option<T>, RobotError> {
+        self.table(key)?.map(|table| self.read_whole(table, read)).transpose()
+    }
+
+    /// The same for each table of a list.
+    pub(super) fn parts<T>(
+        &mut self,
+        key: &str,
+        mut read: impl FnMut(&mut Fields) -> Result<T, RobotError>,
+    ) -> Result<Vec<T>, RobotError> {
+        let tables = self.tables(key)?.into_iter();
+        tables.map(|table| self.read_whole(table, &mut read)).collect()
+    }
+
+    /// The same for a given table below this one.
+    pub(super) fn read_whole<T>(
+        &mut self,
+        mut table: Fields,
+        read: impl FnOnce(&mut Fields) -> Result<T, RobotError>,
+    ) -> Result<T, RobotError> {
+        let part = read(&mut table)?;
+        self.inner.extend(table.finish()?);
+        Ok(part)
     }
 
     /// The node of a key, if present.
@@ -150,12 +183,22 @@ impl Fields {
         })
     }
 
+    /// What `read` finds at a key, or an error for a missing key.
+    pub(super) fn must<T>(
+        &mut self,
+        key: &str,
+        read: impl FnOnce(&mut Fields, &str) -> Result<Option<T>, RobotError>,
+    ) -> Result<T, RobotError> {
+        let value = read(self, key)?;
+        self.required(key, value)
+    }
+
     /// A text.
     pub(super) fn text(&mut self, key: &str) -> Result<Option<String>, RobotError> {
         let Some(node) = self.take(key) else { return Ok(None) };
-        match node.value {
-            Value::Text(text) => Ok(Some(text)),
-            other => Err(self.wrong_type(key, &node.place, &other, "a text")),
+        match &node.value {
+            Value::Text(text) => Ok(Some(text.clone())),
+            _ => Err(self.wrong_type(key, &node, "a text")),
         }
     }
 
@@ -165,22 +208,20 @@ impl Fields {
         key: &str,
         words: &[(&str, T)],
     ) -> Result<Option<T>, RobotError> {
-        let Some(node) = self.take(key) else { return Ok(None) };
         let list = words.iter().map(|(word, _)| format!("\"{word}\"")).collect::<Vec<_>>();
         let expected = list.join(" or ");
-        let Value::Text(text) = &node.value else {
-            return Err(self.wrong_type(key, &node.place, &node.value, &expected));
-        };
-        let Some((_, value)) = words.iter().find(|(word, _)| word == text) else {
-            return Err(RobotError::Value {
+        self.noted(key, |fields, node| {
+            let Value::Text(text) = &node.value else {
+                return Err(fields.wrong_type(key, node, &expected));
+            };
+            let found = words.iter().find(|(word, _)| word == text);
+            found.map(|(_, value)| *value).ok_or_else(|| RobotError::Value {
                 place: node.place.to_string(),
-                key: self.path(key),
+                key: fields.path(key),
                 value: format!("\"{text}\""),
-                must: expected,
-            });
-        };
-        self.note(key, &node);
-        Ok(Some(*value))
+                must: expected.clone(),
+            })
+        })
     }
 
     /// A number.
@@ -189,16 +230,12 @@ impl Fields {
         key: &str,
         accepts: Accepts,
     ) -> Result<Option<f64>, RobotError> {
-        let Some(node) = self.take(key) else { return Ok(None) };
-        let value = self.as_number(key, &node, accepts)?;
-        self.note(key, &node);
-        Ok(Some(value))
+        self.noted(key, |fields, node| fields.as_number(key, node, accepts))
     }
 
     /// A joint number, counted from 1 in the file and from 0 in the result.
     pub(super) fn joint(&mut self, key: &str, dof: usize) -> Result<usize, RobotError> {
-        let node = self.take(key);
-        let node = self.required(key, node)?;
+        let node = self.must(key, |fields, key| Ok(fields.take(key)))?;
         let value = self.as_number(key, &node, Accepts::Positive)?;
         if value.fract() != 0.0 || value > dof as f64 {
             return Err(RobotError::Value {
@@ -233,10 +270,7 @@ impl Fields {
 
     /// An interval `[low, high]`.
     pub(super) fn interval(&mut self, key: &str) -> Result<Option<[f64; 2]>, RobotError> {
-        let Some(node) = self.take(key) else { return Ok(None) };
-        let interval = self.as_interval(key, &node)?;
-        self.note(key, &node);
-        Ok(Some(interval))
+        self.noted(key, |fields, node| fields.as_interval(key, node))
     }
 
     /// An interval for each of `dof` joints.
@@ -245,12 +279,10 @@ impl Fields {
         key: &str,
         dof: usize,
     ) -> Result<Option<Vec<[f64; 2]>>, RobotError> {
-        let Some(node) = self.take(key) else { return Ok(None) };
-        let items = self.as_list(key, &node, dof, &per_joint_words(dof))?;
-        let intervals =
-            items.iter().map(|item| self.as_interval(key, item)).collect::<Result<_, _>>()?;
-        self.note(key, &node);
-        Ok(Some(intervals))
+        self.noted(key, |fields, node| {
+            let items = fields.as_list(key, node, dof, &per_joint_words(dof))?;
+            items.iter().map(|item| fields.as_interval(key, item)).collect()
+        })
     }
 
     /// A table below this one.
@@ -263,7 +295,7 @@ impl Fields {
     pub(super) fn tables(&mut self, key: &str) -> Result<Vec<Fields>, RobotError> {
         let Some(node) = self.take(key) else { return Ok(Vec::new()) };
         let Value::List(items) = node.value else {
-            return Err(self.wrong_type(key, &node.place, &node.value, "a list of tables"));
+            return Err(self.wrong_type(key, &node, "a list of tables"));
         };
         let name = self.path(key);
         items
@@ -281,14 +313,10 @@ impl Fields {
         expected: &str,
         accepts: Accepts,
     ) -> Result<Option<Vec<f64>>, RobotError> {
-        let Some(node) = self.take(key) else { return Ok(None) };
-        let items = self.as_list(key, &node, len, expected)?;
-        let list = items
-            .iter()
-            .map(|item| self.as_number(key, item, accepts))
-            .collect::<Result<_, _>>()?;
-        self.note(key, &node);
-        Ok(Some(list))
+        self.noted(key, |fields, node| {
+            let items = fields.as_list(key, node, len, expected)?;
+            items.iter().map(|item| fields.as_number(key, item, accepts)).collect()
+        })
     }
 
     fn as_list<'n>(
@@ -299,7 +327,7 @@ impl Fields {
         expected: &str,
     ) -> Result<&'n [Node], RobotError> {
         let Value::List(items) = &node.value else {
-            return Err(self.wrong_type(key, &node.place, &node.value, expected));
+            return Err(self.wrong_type(key, node, expected));
         };
         if items.len() == len {
             return Ok(items);
@@ -314,7 +342,7 @@ impl Fields {
 
     fn as_number(&self, key: &str, node: &Node, accepts: Accepts) -> Result<f64, RobotError> {
         let Value::Number(value) = node.value else {
-            return Err(self.wrong_type(key, &node.place, &node.value, "a number"));
+            return Err(self.wrong_type(key, node, "a number"));
         };
         if accepts.holds(value) { Ok(value) } else { Err(self.refused(key, node, value, accepts)) }
     }
@@ -323,7 +351,11 @@ impl Fields {
         RobotError::Value {
             place: node.place.to_string(),
             key: self.path(key),
-            value: if value.abs() < HUGE { value.to_string() } else { format!("{value:e}") },
+            value: if value.abs() < EXPONENT_FROM {
+                value.to_string()
+            } else {
+                format!("{value:e}")
+            },
             must: accepts.words().into(),
         }
     }
@@ -348,14 +380,22 @@ impl Fields {
         })
     }
 
-    fn note(&mut self, key: &str, node: &Node) {
+    /// What `read` makes of the value of a key, whose origin is noted, if it is present.
+    fn noted<T>(
+        &mut self,
+        key: &str,
+        read: impl FnOnce(&Fields, &Node) -> Result<T, RobotError>,
+    ) -> Result<Option<T>, RobotError> {
+        let Some(node) = self.take(key) else { return Ok(None) };
+        let value = read(self, &node)?;
         self.origins.push(Origin {
             table: self.name.clone(),
             key: key.to_owned(),
             provenance: node.stated.provenance,
-            source: node.stated.source.clone(),
-            sd: node.stated.sd.clone(),
+            source: node.stated.source,
+            sd: node.stated.sd,
         });
+        Ok(Some(value))
     }
 
     /// The key with its table for messages.
@@ -367,11 +407,11 @@ impl Fields {
         if self.name.is_empty() { "the robot".into() } else { format!("[{}]", self.name) }
     }
 
-    fn wrong_type(&self, key: &str, place: &Place, found: &Value, expected: &str) -> RobotError {
+    fn wrong_type(&self, key: &str, node: &Node, expected: &str) -> RobotError {
         RobotError::Type {
-            place: place.to_string(),
+            place: node.place.to_string(),
             key: self.path(key),
-            found: found.kind(),
+            found: node.value.kind(),
             expected: expected.to_owned(),
         }
     }
@@ -379,12 +419,12 @@ impl Fields {
 
 /// Whether the bound \[rad\] is possible for a bounded or an endless joint.
 pub(super) fn is_turn(bound: f64) -> bool {
-    bound.abs() <= FARTHEST_TURN || is_endless(bound)
+    bound.abs() <= MAX_BOUND || is_endless(bound)
 }
 
 /// Whether the bound \[rad\] is that of an endless joint.
 pub(super) fn is_endless(bound: f64) -> bool {
-    bound.abs() >= ENDLESS
+    bound.abs() >= MIN_ENDLESS_BOUND
 }
 
 fn per_joint_words(dof: usize) -> String {

@@ -2,7 +2,6 @@
 
 use super::error::RobotError;
 use super::fields::{Accepts, Fields};
-use super::provenance::Origin;
 
 /// Joint friction; laws without a source are absent.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,52 +41,32 @@ impl Friction {
         }
     }
 
-    pub(super) fn read(
-        mut fields: Fields,
-        dof: usize,
-        origins: &mut Vec<Origin>,
-    ) -> Result<Friction, RobotError> {
+    pub(super) fn read(fields: &mut Fields, dof: usize) -> Result<Friction, RobotError> {
         let zero = || vec![0.0; dof];
-        let mut law = |fields: &mut Fields, table: &str, key: &str, accepts: Accepts| {
-            let Some(mut law) = fields.table(table)? else { return Ok(None) };
-            let values = law.per_joint(key, dof, accepts)?;
-            let values = law.required(key, values)?;
-            origins.extend(law.finish()?);
-            Ok::<_, RobotError>(Some(values))
+        let mut law = |table: &str, key: &str, accepts: Accepts| {
+            fields.part(table, |law| law.must(key, |law, key| law.per_joint(key, dof, accepts)))
         };
-        let viscous_asymmetry =
-            law(&mut fields, "viscous_asymmetry", "asymmetry", Accepts::Finite)?;
-        let load_friction = law(&mut fields, "load_friction", "mu", Accepts::NonNegative)?;
-        let stribeck = match fields.table("stribeck")? {
-            Some(table) => Some(Stribeck::read(table, dof, origins)?),
-            None => None,
-        };
-        let friction = Friction {
+        let viscous_asymmetry = law("viscous_asymmetry", "asymmetry", Accepts::Finite)?;
+        let load_friction = law("load_friction", "mu", Accepts::NonNegative)?;
+        let stribeck = fields.part("stribeck", |table| Stribeck::read(table, dof))?;
+        Ok(Friction {
             coulomb: fields.per_joint("coulomb", dof, Accepts::NonNegative)?.unwrap_or_else(zero),
             viscous: fields.per_joint("viscous", dof, Accepts::NonNegative)?.unwrap_or_else(zero),
             coulomb_asymmetry: fields.per_joint("coulomb_asymmetry", dof, Accepts::Finite)?,
             viscous_asymmetry,
             stribeck,
             load_friction,
-        };
-        origins.extend(fields.finish()?);
-        Ok(friction)
+        })
     }
 }
 
 impl Stribeck {
-    fn read(
-        mut fields: Fields,
-        dof: usize,
-        origins: &mut Vec<Origin>,
-    ) -> Result<Stribeck, RobotError> {
+    fn read(fields: &mut Fields, dof: usize) -> Result<Stribeck, RobotError> {
         let stiction = fields.per_joint("stiction", dof, Accepts::Finite)?;
         let velocity = fields.per_joint("velocity", dof, Accepts::Positive)?;
-        let stribeck = Stribeck {
+        Ok(Stribeck {
             stiction: fields.required("stiction", stiction)?,
             velocity: fields.required("velocity", velocity)?,
-        };
-        origins.extend(fields.finish()?);
-        Ok(stribeck)
+        })
     }
 }

@@ -90,9 +90,10 @@ pub struct OffsetWrist {
 }
 
 /// Relation of the reported joint angles to those of the serial chain.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Coupling {
     /// Each joint turns its own link.
+    #[default]
     None,
     /// A parallelogram drives the forearm: the reported angle of axis 3 is relative to the base,
     /// so the serial angle is q3 − q2.

@@ -6,42 +6,37 @@ use super::error::RobotError;
 use super::fields::{ANGLE, Accepts, Fields, LENGTH};
 use super::geometry::{Coupling, Geometry, Joint, Opw};
 use super::ortho_parallel::{offset_wrist, recognise};
-use super::provenance::Origin;
 
 impl Geometry {
+    /// The geometry in the table `kinematics` of a robot and its tables of joints.
     pub(super) fn read(
-        fields: Option<Fields>,
+        robot: &mut Fields,
         joints: Vec<Fields>,
-        origins: &mut Vec<Origin>,
     ) -> Result<Option<Geometry>, RobotError> {
-        let mut opw = None;
-        let mut flange = None;
-        let mut base = None;
-        let mut coupling = Coupling::None;
-        if let Some(mut fields) = fields {
-            opw = fields.table("opw")?.map(|table| Opw::read(table, origins)).transpose()?;
-            flange = fields.table("flange")?.map(|table| pose(table, origins)).transpose()?;
-            base = fields.table("base")?.map(|table| pose(table, origins)).transpose()?;
-            let words = [("none", Coupling::None), ("parallelogram", Coupling::Parallelogram)];
-            coupling = fields.choice("coupling", &words)?.unwrap_or(Coupling::None);
-            let place = fields.place();
-            origins.extend(fields.finish()?);
-            if opw.is_some() && (!joints.is_empty() || flange.is_some()) {
-                return Err(RobotError::Value {
-                    place,
-                    key: "kinematics.opw".into(),
-                    value: "{…}".into(),
-                    must: "alone: the flange is part of opw, [[joint]] is the other form".into(),
-                });
-            }
-            if coupling == Coupling::Parallelogram && opw.is_none() && joints.len() < 3 {
-                return Err(RobotError::Value {
-                    place,
-                    key: "kinematics.coupling".into(),
-                    value: "\"parallelogram\"".into(),
-                    must: "\"none\" for a robot of fewer than 3 joints".into(),
-                });
-            }
+        let words = [("none", Coupling::None), ("parallelogram", Coupling::Parallelogram)];
+        let place = robot.place_of("kinematics");
+        let kinematics = robot.part("kinematics", |fields| {
+            let opw = fields.part("opw", Opw::read)?;
+            let flange = fields.part("flange", pose)?;
+            let base = fields.part("base", pose)?;
+            Ok((opw, flange, base, fields.choice("coupling", &words)?.unwrap_or_default()))
+        })?;
+        let (opw, flange, base, coupling) = kinematics.unwrap_or_default();
+        if opw.is_some() && (!joints.is_empty() || flange.is_some()) {
+            return Err(RobotError::Value {
+                place,
+                key: "kinematics.opw".into(),
+                value: "{…}".into(),
+                must: "alone: the flange is part of opw, [[joint]] is the other form".into(),
+            });
+        }
+        if coupling == Coupling::Parallelogram && opw.is_none() && joints.len() < 3 {
+            return Err(RobotError::Value {
+                place,
+                key: "kinematics.coupling".into(),
+                value: "\"parallelogram\"".into(),
+                must: "\"none\" for a robot of fewer than 3 joints".into(),
+            });
         }
         let base = base.unwrap_or_else(Isometry3::identity);
         if let Some(opw) = opw {
@@ -49,8 +44,8 @@ impl Geometry {
             let (opw, offset_wrist) = (Some(opw), None);
             return Ok(Some(Geometry { joints, flange, opw, offset_wrist, coupling, base }));
         }
-        let joints =
-            joints.into_iter().map(|table| joint(table, origins)).collect::<Result<Vec<_>, _>>()?;
+        let joints = joints.into_iter().map(|table| robot.read_whole(table, joint));
+        let joints = joints.collect::<Result<Vec<_>, _>>()?;
         if joints.is_empty() {
             return Ok(None);
         }
@@ -62,11 +57,10 @@ impl Geometry {
 }
 
 impl Opw {
-    fn read(mut fields: Fields, origins: &mut Vec<Origin>) -> Result<Opw, RobotError> {
+    fn read(fields: &mut Fields) -> Result<Opw, RobotError> {
         let mut lengths = [0.0; 7];
         for (length, key) in lengths.iter_mut().zip(["a1", "a2", "b", "c1", "c2", "c3", "c4"]) {
-            let value = fields.number(key, LENGTH)?;
-            *length = fields.required(key, value)?;
+            *length = fields.must(key, |f, key| f.number(key, LENGTH))?;
         }
         let [a1, a2, b, c1, c2, c3, c4] = lengths;
         if c2 <= 0.0 || a2.hypot(c3) <= 0.0 {
@@ -77,10 +71,8 @@ impl Opw {
                 must: "an arm with c2 > 0 and a forearm".into(),
             });
         }
-        let offsets = fields.array::<6>("offsets", ANGLE)?;
-        let offsets = fields.required("offsets", offsets)?;
-        let signs = fields.array::<6>("signs", Accepts::Finite)?;
-        let signs = fields.required("signs", signs)?;
+        let offsets = fields.must("offsets", |f, key| f.array(key, ANGLE))?;
+        let signs: [f64; 6] = fields.must("signs", |f, key| f.array(key, Accepts::Finite))?;
         if signs.iter().any(|sign| sign.abs() != 1.0) {
             return Err(RobotError::Value {
                 place: fields.place(),
@@ -89,17 +81,15 @@ impl Opw {
                 must: "1 or -1 for each joint".into(),
             });
         }
-        origins.extend(fields.finish()?);
         Ok(Opw { a1, a2, b, c1, c2, c3, c4, offsets, signs })
     }
 }
 
-fn joint(mut fields: Fields, origins: &mut Vec<Origin>) -> Result<Joint, RobotError> {
-    let origin = fields.array::<3>("origin", LENGTH)?;
-    let origin = fields.required("origin", origin)?;
+fn joint(fields: &mut Fields) -> Result<Joint, RobotError> {
+    let origin: [f64; 3] = fields.must("origin", |f, key| f.array(key, LENGTH))?;
     let [roll, pitch, yaw] = fields.array::<3>("rpy", ANGLE)?.unwrap_or_default();
-    let axis = fields.array::<3>("axis", Accepts::Between(-1e9, 1e9, "a direction"))?;
-    let axis = fields.required("axis", axis)?;
+    let direction = Accepts::Between(-1e9, 1e9, "a direction");
+    let axis: [f64; 3] = fields.must("axis", |f, key| f.array(key, direction))?;
     let Some(axis) = Unit::try_new(Vector3::from(axis), 1e-9) else {
         return Err(RobotError::Value {
             place: fields.place(),
@@ -108,7 +98,6 @@ fn joint(mut fields: Fields, origins: &mut Vec<Origin>) -> Result<Joint, RobotEr
             must: "a direction".into(),
         });
     };
-    origins.extend(fields.finish()?);
     Ok(Joint {
         translation: Vector3::from(origin),
         rotation: Rotation3::from_euler_angles(roll, pitch, yaw),
@@ -116,10 +105,9 @@ fn joint(mut fields: Fields, origins: &mut Vec<Origin>) -> Result<Joint, RobotEr
     })
 }
 
-fn pose(mut fields: Fields, origins: &mut Vec<Origin>) -> Result<Isometry3<f64>, RobotError> {
+fn pose(fields: &mut Fields) -> Result<Isometry3<f64>, RobotError> {
     let origin = fields.array::<3>("origin", LENGTH)?.unwrap_or_default();
     let [roll, pitch, yaw] = fields.array::<3>("rpy", ANGLE)?.unwrap_or_default();
-    origins.extend(fields.finish()?);
     Ok(Isometry3::from_parts(
         Translation3::from(Vector3::from(origin)),
         UnitQuaternion::from_euler_angles(roll, pitch, yaw),

@@ -3,7 +3,6 @@
 use super::error::RobotError;
 use super::fields::{Accepts, Fields};
 use super::pose_acceleration::PoseAcceleration;
-use super::provenance::Origin;
 
 /// Joint speeds \[rad/s\].
 const SPEED: Accepts = Accepts::Between(
@@ -80,25 +79,11 @@ impl Limits {
         [low, high]
     }
 
-    pub(super) fn read(
-        mut fields: Fields,
-        dof: usize,
-        origins: &mut Vec<Origin>,
-    ) -> Result<Limits, RobotError> {
-        let position = fields.intervals("position", dof)?;
-        let position = fields.required("position", position)?;
-        let mut position_if = Vec::new();
-        for table in fields.tables("position_if")? {
-            position_if.push(PositionIf::read(table, dof, origins)?);
-        }
-        let acceleration_by_pose = match fields.table("acceleration_by_pose")? {
-            Some(table) => Some(PoseAcceleration::read(table, origins)?),
-            None => None,
-        };
-        let limits = Limits {
-            acceleration_by_pose,
-            position,
-            position_if,
+    pub(super) fn read(fields: &mut Fields, dof: usize) -> Result<Limits, RobotError> {
+        Ok(Limits {
+            position: fields.must("position", |f, key| f.intervals(key, dof))?,
+            position_if: fields.parts("position_if", |table| PositionIf::read(table, dof))?,
+            acceleration_by_pose: fields.part("acceleration_by_pose", PoseAcceleration::read)?,
             coupled: fields.interval("coupled")?,
             velocity: fields.per_joint("velocity", dof, SPEED)?,
             acceleration: fields.per_joint("acceleration", dof, ACCELERATION)?,
@@ -106,21 +91,14 @@ impl Limits {
             torque: fields.per_joint("torque", dof, Accepts::Positive)?,
             tcp_speed: fields.number("tcp_speed", TCP_SPEED)?,
             tcp_acceleration: fields.number("tcp_acceleration", Accepts::Positive)?,
-        };
-        origins.extend(fields.finish()?);
-        Ok(limits)
+        })
     }
 }
 
 impl PositionIf {
-    fn read(
-        mut fields: Fields,
-        dof: usize,
-        origins: &mut Vec<Origin>,
-    ) -> Result<PositionIf, RobotError> {
+    fn read(fields: &mut Fields, dof: usize) -> Result<PositionIf, RobotError> {
         let joint = fields.joint("joint", dof)?;
-        let position = fields.interval("position")?;
-        let position = fields.required("position", position)?;
+        let position = fields.must("position", Fields::interval)?;
         let place = fields.place_of("if_joint");
         let if_joint = fields.joint("if_joint", dof)?;
         if if_joint == joint {
@@ -131,9 +109,7 @@ impl PositionIf {
                 must: "another joint than the one whose range widens".into(),
             });
         }
-        let if_within = fields.interval("if_within")?;
-        let if_within = fields.required("if_within", if_within)?;
-        origins.extend(fields.finish()?);
+        let if_within = fields.must("if_within", Fields::interval)?;
         Ok(PositionIf { joint, position, if_joint, if_within })
     }
 }

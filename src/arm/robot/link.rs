@@ -4,13 +4,12 @@ use nalgebra::{Isometry3, Matrix3, SymmetricEigen, Vector3};
 
 use super::error::RobotError;
 use super::fields::{Accepts, Fields, LENGTH};
-use super::provenance::Origin;
 
 /// Tolerance of consistency relative to the largest principal moment: rounding of printed numbers.
 const ROUNDING: f64 = 1e-9;
 
 /// Largest radius of gyration of a part of a robot \[m\].
-const FARTHEST_MASS: f64 = 5.0;
+const MAX_GYRATION_RADIUS: f64 = 5.0;
 
 /// Masses \[kg\].
 pub(super) const MASS: Accepts = Accepts::Between(0.0, 1e5, "0 or more and at most 100000, in kg");
@@ -47,7 +46,7 @@ impl Link {
             ));
         }
         let radius = (c / self.mass).sqrt();
-        (self.mass > 0.0 && radius > FARTHEST_MASS).then(|| {
+        (self.mass > 0.0 && radius > MAX_GYRATION_RADIUS).then(|| {
             format!(
                 "a moment of {c:.3e} kg m2 puts the {} kg at {radius:.1} m from the axis (kg mm2 \
                  would be a million times more)",
@@ -81,13 +80,10 @@ impl Link {
         Link { mass, com, inertia: about(self) + about(other) }
     }
 
-    pub(super) fn read(mut fields: Fields, origins: &mut Vec<Origin>) -> Result<Link, RobotError> {
-        let mass = fields.number("mass", MASS)?;
-        let mass = fields.required("mass", mass)?;
-        let com = fields.array::<3>("com", LENGTH)?;
-        let com = fields.required("com", com)?;
-        let inertia = fields.array::<6>("inertia", Accepts::Finite)?;
-        let moments = fields.required("inertia", inertia)?;
+    pub(super) fn read(fields: &mut Fields) -> Result<Link, RobotError> {
+        let mass = fields.must("mass", |f, key| f.number(key, MASS))?;
+        let com: [f64; 3] = fields.must("com", |f, key| f.array(key, LENGTH))?;
+        let moments = fields.must("inertia", |f, key| f.array(key, Accepts::Finite))?;
         let inertia = symmetric(moments);
         let principal = principal_moments(&inertia);
         if principal[0] < -ROUNDING * principal[2].abs() {
@@ -102,37 +98,28 @@ impl Link {
                 ),
             });
         }
-        origins.extend(fields.finish()?);
         Ok(Link { mass, com: Vector3::from(com), inertia })
     }
 }
 
-/// A part mounted on a link, such as a valve block on the upper arm.
-pub(super) struct ArmLoad {
-    /// The joint that moves it, from 0.
-    pub(super) joint: usize,
-    /// The body in the frame of that joint.
-    pub(super) body: Link,
-}
-
-impl ArmLoad {
-    pub(super) fn read(
-        mut fields: Fields,
-        dof: usize,
-        origins: &mut Vec<Origin>,
-    ) -> Result<ArmLoad, RobotError> {
-        let joint = fields.joint("joint", dof)?;
-        let (place, key) = (fields.place_of("inertia"), fields.path("inertia"));
-        let body = Link::read(fields, origins)?;
-        match body.impossible() {
-            None => Ok(ArmLoad { joint, body }),
-            Some(why) => Err(RobotError::Value {
-                place,
-                key,
-                value: "[…]".into(),
-                must: format!("that of a body: {why}"),
-            }),
-        }
+/// A part mounted on a link, such as a valve block on the upper arm, in a table of the robot: the
+/// joint that moves it, from 0, and the body in the frame of that joint.
+pub(super) fn arm_load(
+    robot: &mut Fields,
+    table: Fields,
+    dof: usize,
+) -> Result<(usize, Link), RobotError> {
+    let (place, key) = (table.place_of("inertia"), table.path("inertia"));
+    let read = |fields: &mut Fields| Ok((fields.joint("joint", dof)?, Link::read(fields)?));
+    let (joint, body) = robot.read_whole(table, read)?;
+    match body.impossible() {
+        None => Ok((joint, body)),
+        Some(why) => Err(RobotError::Value {
+            place,
+            key,
+            value: "[…]".into(),
+            must: format!("that of a body: {why}"),
+        }),
     }
 }
 

@@ -13,7 +13,7 @@ use super::fields::{Accepts, LENGTH, TURN, is_turn};
 use super::limits::TCP_SPEED;
 use super::link::{Link, MASS};
 use super::load::find as find_robot;
-use super::system_parameters::{Entry, break_off, section};
+use super::system_parameters::{Entry, section, truncation};
 use super::toml_text::{list, pose, quoted};
 
 /// One of the first and one of the last sections of a file written by a controller.
@@ -41,7 +41,7 @@ const HEADER: &str = "MOC:CFG_";
 /// robot; it has several robots and `unit` names none of them.
 pub fn import_moc(file: &str, text: &str, unit: Option<&str>) -> Result<String, RobotError> {
     let configuration = Configuration { file, text };
-    configuration.check_whole()?;
+    configuration.check_complete()?;
     let (index, robot) = configuration.robot(unit)?;
     let kind = configuration.text(&robot, "use_robot_type", "ROBOT")?;
     let model = find_robot(kind).map_err(|error| {
@@ -50,6 +50,9 @@ pub fn import_moc(file: &str, text: &str, unit: Option<&str>) -> Result<String, 
 
     let source = quoted(&format!("{file}, {kind}"));
     let stated = format!("source = {source}\nprovenance = \"identified\"\n");
+    let entry = |key: &str, value: &str| {
+        format!("{key} = {value}\n{key}_source = {source}\n{key}_provenance = \"identified\"\n")
+    };
     let mut out = format!("extends = {}\nname = {}\n", quoted(&model.name), quoted(&model.name));
 
     if let Some(base) = configuration.base(&robot)? {
@@ -62,42 +65,29 @@ pub fn import_moc(file: &str, text: &str, unit: Option<&str>) -> Result<String, 
             stated.unwrap_or_else(|| format!("rob{}_{}", index + 1, i + 1))
         })
         .collect();
-    let _ = write!(out, "\n[limits]\nposition = [\n");
+    let mut ranges = String::from("[\n");
     for joint in &joints {
         let arm = configuration.named(&arms, joint, "ARM")?;
         let keys = ["lower_joint_bound", "upper_joint_bound"];
-        let _ = writeln!(out, "  {},", list(&configuration.range(arm, keys, joint)?));
+        let _ = writeln!(ranges, "  {},", list(&configuration.range(arm, keys, joint)?));
     }
-    let _ = write!(out, "]\nposition_source = {source}\nposition_provenance = \"identified\"\n");
+    let _ = write!(out, "\n[limits]\n{}", entry("position", &(ranges + "]")));
     // Ranges of the controller hold without the conditions of the data sheet.
     out.push_str("position_if = []\n");
     if let Some(arm) = joints.get(2).and_then(|joint| find(&arms, joint))
         && arm.contains_key("upper_joint_coupl_bound")
     {
         let keys = ["lower_joint_coupl_bound", "upper_joint_coupl_bound"];
-        let _ = write!(
-            out,
-            "coupled = {}\ncoupled_source = {source}\ncoupled_provenance = \"identified\"\n",
-            list(&configuration.range(arm, keys, &joints[2])?)
-        );
+        out.push_str(&entry("coupled", &list(&configuration.range(arm, keys, &joints[2])?)));
     }
     let planners = section(text, "MOTION_PLANNER");
     if let Some(planner) = planners.get(index).filter(|p| p.contains_key("linear_max_speed")) {
         let speed =
             configuration.number(planner, "linear_max_speed", "MOTION_PLANNER", TCP_SPEED)?;
-        let _ = write!(
-            out,
-            "tcp_speed = {speed:?}\ntcp_speed_source = {source}\n\
-             tcp_speed_provenance = \"identified\"\n"
-        );
+        out.push_str(&entry("tcp_speed", &format!("{speed:?}")));
     }
     if let Some(levels) = configuration.friction(index, model.dof)? {
-        let _ = write!(
-            out,
-            "\n[controller]\nfriction_level = {}\nfriction_level_source = {source}\n\
-             friction_level_provenance = \"identified\"\n",
-            list(&levels)
-        );
+        let _ = write!(out, "\n[controller]\n{}", entry("friction_level", &list(&levels)));
     }
     out.push_str(&configuration.arm_loads(index, &arms, &joints, &stated)?);
     Ok(out)
@@ -117,7 +107,7 @@ impl Configuration<'_> {
         RobotError::Configuration { place: format!("{}:{line}", self.file), message }
     }
 
-    fn check_whole(&self) -> Result<(), RobotError> {
+    fn check_complete(&self) -> Result<(), RobotError> {
         let at = |line: usize, message: String| Err(self.error_at(line, message));
         if !self.text.trim_start_matches('\u{feff}').starts_with(HEADER) {
             return at(
@@ -127,14 +117,14 @@ impl Configuration<'_> {
                 ),
             );
         }
-        let broken = break_off(self.text).map(|(line, how)| (line, how.to_owned()));
+        let broken = truncation(self.text).map(|(line, how)| (line, how.to_owned()));
         // A file that starts like one of a controller must also end like one.
         let [begins, ends] = ENDS.map(|name| !section(self.text, name).is_empty());
         let lacks = (begins && !ends)
             .then(|| (self.text.lines().count(), format!("there is no section {}", ENDS[1])));
         if let Some((line, how)) = broken.or(lacks) {
             let message =
-                format!("the file breaks off here ({how}); take it from the backup again");
+                format!("the file is cut off here ({how}); copy it from the backup again");
             return at(line, message);
         }
         for name in READ {
@@ -196,24 +186,12 @@ impl Configuration<'_> {
         {
             return Ok(None);
         }
-        let or = |key: &str, absent: f64| {
-            if robot.contains_key(key) {
-                self.number(robot, key, "ROBOT", PLACEMENT)
-            } else {
-                Ok(absent)
-            }
-        };
-        let [x, y, z] = [
-            or("base_frame_pos_x", 0.0)?,
-            or("base_frame_pos_y", 0.0)?,
-            or("base_frame_pos_z", 0.0)?,
-        ];
-        let turn = Quaternion::new(
-            or("base_frame_orient_u0", 1.0)?,
-            or("base_frame_orient_u1", 0.0)?,
-            or("base_frame_orient_u2", 0.0)?,
-            or("base_frame_orient_u3", 0.0)?,
-        );
+        let position = ["x", "y", "z"].map(|axis| format!("base_frame_pos_{axis}"));
+        let [x, y, z] = self.numbers(robot, &position, "ROBOT", PLACEMENT)?;
+        let turn = [0, 1, 2, 3].map(|i| format!("base_frame_orient_u{i}"));
+        let [u0, u1, u2, u3] = self.numbers(robot, &turn, "ROBOT", PLACEMENT)?;
+        let u0 = if robot.contains_key(&turn[0]) { u0 } else { 1.0 };
+        let turn = Quaternion::new(u0, u1, u2, u3);
         if (turn.norm() - 1.0).abs() > UNIT {
             let key = robot.keys().find(|key| key.starts_with("base_frame_orient"));
             return Err(self.error_at(
@@ -311,20 +289,11 @@ impl Configuration<'_> {
 
     /// The keys of the body of a load; `None` if its mass is 0.
     fn arm_load(&self, load: &Entry, name: &str) -> Result<Option<String>, RobotError> {
-        let or_zero = |key: &str, accepts: Accepts| {
-            if load.contains_key(key) { self.number(load, key, name, accepts) } else { Ok(0.0) }
-        };
-        let mass = or_zero("mass", MASS)?;
-        let com = [
-            or_zero("mass_centre_x", LENGTH)?,
-            or_zero("mass_centre_y", LENGTH)?,
-            or_zero("mass_centre_z", LENGTH)?,
-        ];
-        let moments = [
-            or_zero("inertia_x", Accepts::NonNegative)?,
-            or_zero("inertia_y", Accepts::NonNegative)?,
-            or_zero("inertia_z", Accepts::NonNegative)?,
-        ];
+        let [mass] = self.numbers(load, &["mass".to_owned()], name, MASS)?;
+        let keys = ["x", "y", "z"].map(|axis| format!("mass_centre_{axis}"));
+        let com = self.numbers(load, &keys, name, LENGTH)?;
+        let keys = ["x", "y", "z"].map(|axis| format!("inertia_{axis}"));
+        let moments = self.numbers(load, &keys, name, Accepts::NonNegative)?;
         if mass == 0.0 {
             return Ok(None);
         }
@@ -334,10 +303,9 @@ impl Configuration<'_> {
             inertia: Matrix3::from_diagonal(&Vector3::from(moments)),
         };
         if let Some(why) = body.impossible() {
-            let keys = ["inertia_x", "inertia_y", "inertia_z"];
-            let key = keys.into_iter().find(|key| load.contains_key(key)).unwrap_or("mass");
+            let key = keys.iter().find(|key| load.contains_key(key));
             return Err(self.error_at(
-                load.line_of(key),
+                load.line_of(key.map_or("mass", String::as_str)),
                 format!(
                     "{name}: {why}; correct -inertia_x, -inertia_y and -inertia_z (kg m2), or leave \
                      all three out"
@@ -388,6 +356,21 @@ impl Configuration<'_> {
             let message = format!("{of} has no -{key}; take the file from the backup again");
             self.error_at(entry.line_of(key), message)
         })
+    }
+
+    /// The values of keys, 0 for an absent one.
+    fn numbers<const N: usize>(
+        &self,
+        entry: &Entry,
+        keys: &[String; N],
+        of: &str,
+        accepts: Accepts,
+    ) -> Result<[f64; N], RobotError> {
+        let mut values = [0.0; N];
+        for (value, key) in values.iter_mut().zip(keys).filter(|(_, key)| entry.contains_key(key)) {
+            *value = self.number(entry, key, of, accepts)?;
+        }
+        Ok(values)
     }
 
     fn number(

@@ -10,7 +10,7 @@ use super::friction::Friction;
 use super::geometry::{Geometry, MAX_DOF};
 use super::law::Law;
 use super::limits::Limits;
-use super::link::{ArmLoad, Link};
+use super::link::{Link, arm_load};
 use super::motors::Motors;
 use super::provenance::{self, Origin, Provenance};
 use super::sensors::Sensors;
@@ -98,9 +98,8 @@ impl Model {
     /// Whether a number is stated in the robot file and neither assumed nor estimated.
     #[must_use]
     pub fn is_known(&self, table: &str, key: &str) -> bool {
-        let mut origins = self.origins.iter().filter(|o| o.table == table && o.key == key);
         let rough = [Some(Provenance::Assumed), Some(Provenance::Estimated)];
-        origins.next().is_some_and(|origin| !rough.contains(&origin.provenance))
+        self.origin_of(table, key).is_some_and(|origin| !rough.contains(&origin.provenance))
     }
 
     /// Number of values with this provenance.
@@ -131,9 +130,7 @@ impl Model {
     /// The model of a document with resolved `extends`.
     pub(super) fn read(node: Node) -> Result<Model, RobotError> {
         let mut robot = Fields::new("", node)?;
-        let mut origins = Vec::new();
-        let name = robot.text("name")?;
-        let name = robot.required("name", name)?;
+        let name = robot.must("name", Fields::text)?;
         robot.text("extends")?;
         let type_name = robot.text("type")?;
         let mass = robot.number("mass", ROBOT_MASS)?;
@@ -148,34 +145,25 @@ impl Model {
                 expected: format!("at most {MAX_DOF}"),
             });
         }
-        let kinematics = Geometry::read(robot.table("kinematics")?, joints, &mut origins)?;
+        let kinematics = Geometry::read(&mut robot, joints)?;
         let kinematics = robot.required("kinematics.opw or [[joint]]", kinematics)?;
         let dof = kinematics.joints.len();
 
-        let limits = robot.table("limits")?;
-        let limits = Limits::read(robot.required("limits", limits)?, dof, &mut origins)?;
-        let links = read_links(&mut robot, dof, &mut origins)?;
-        let friction = part(&mut robot, "friction", |t| Friction::read(t, dof, &mut origins))?
-            .unwrap_or_else(|| Friction::none(dof));
-        let motors = part(&mut robot, "motors", |t| Motors::read(t, dof, &mut origins))?;
-        let wrist = part(&mut robot, "wrist", |t| Wrist::read(t, dof, &mut origins))?
-            .unwrap_or_else(Wrist::uncoupled);
-        let drive = part(&mut robot, "drive", |t| Drive::read(t, &mut origins))?
-            .unwrap_or_else(Drive::lossless);
-        let brakes = part(&mut robot, "brakes", |t| Brakes::read(t, &mut origins))?;
-        let standstill =
-            part(&mut robot, "standstill", |t| Standstill::read(t, dof, &mut origins))?
-                .unwrap_or_else(|| Standstill::none(dof));
-        let controller =
-            part(&mut robot, "controller", |t| Controller::read(t, dof, &mut origins))?
-                .unwrap_or_default();
-        let effects =
-            part(&mut robot, "effects", |t| EffectParameters::read_all(t, dof, &mut origins))?
-                .unwrap_or_default();
-        let calibration = part(&mut robot, "calibration", Calibration::read)?;
+        let limits =
+            robot.must("limits", |robot, key| robot.part(key, |t| Limits::read(t, dof)))?;
+        let links = read_links(&mut robot, dof)?;
+        let friction = robot.part("friction", |t| Friction::read(t, dof))?;
+        let motors = robot.part("motors", |t| Motors::read(t, dof))?;
+        let wrist = robot.part("wrist", |t| Wrist::read(t, dof))?;
+        let drive = robot.part("drive", Drive::read)?;
+        let brakes = robot.part("brakes", Brakes::read)?;
+        let standstill = robot.part("standstill", |t| Standstill::read(t, dof))?;
+        let controller = robot.part("controller", |t| Controller::read(t, dof))?;
+        let effects = robot.part("effects", |t| EffectParameters::read_all(t, dof))?;
+        let calibration = robot.table("calibration")?.map(Calibration::read).transpose()?;
         // The table `identification` documents its origin; it is not used in computations.
         robot.take("identification");
-        origins.extend(robot.finish()?);
+        let origins = robot.finish()?;
         Ok(Model {
             name,
             file: None,
@@ -186,15 +174,15 @@ impl Model {
             kinematics,
             limits,
             links,
-            friction,
+            friction: friction.unwrap_or_else(|| Friction::none(dof)),
             motors,
-            wrist,
-            drive,
+            wrist: wrist.unwrap_or_default(),
+            drive: drive.unwrap_or_default(),
             brakes,
-            standstill,
-            controller,
+            standstill: standstill.unwrap_or_else(|| Standstill::none(dof)),
+            controller: controller.unwrap_or_default(),
             sensors: Sensors::exact(dof),
-            effects,
+            effects: effects.unwrap_or_default(),
             laws: Vec::new(),
             calibration,
             origins,
@@ -202,25 +190,10 @@ impl Model {
     }
 }
 
-/// A part of a robot with its own table, if present.
-fn part<T>(
-    robot: &mut Fields,
-    key: &str,
-    read: impl FnOnce(Fields) -> Result<T, RobotError>,
-) -> Result<Option<T>, RobotError> {
-    robot.table(key)?.map(read).transpose()
-}
-
 /// The links with mounted arm loads; none, or one per joint.
-fn read_links(
-    robot: &mut Fields,
-    dof: usize,
-    origins: &mut Vec<Origin>,
-) -> Result<Vec<Link>, RobotError> {
+fn read_links(robot: &mut Fields, dof: usize) -> Result<Vec<Link>, RobotError> {
     let place = robot.place_of("link");
-    let tables = robot.tables("link")?.into_iter();
-    let mut links =
-        tables.map(|table| Link::read(table, origins)).collect::<Result<Vec<_>, _>>()?;
+    let mut links = robot.parts("link", Link::read)?;
     if !links.is_empty() && links.len() != dof {
         return Err(RobotError::Length {
             place,
@@ -230,9 +203,9 @@ fn read_links(
         });
     }
     for table in robot.tables("arm_load")? {
-        let load = ArmLoad::read(table, dof, origins)?;
-        if let Some(link) = links.get_mut(load.joint) {
-            *link = link.joined(&load.body);
+        let (joint, body) = arm_load(robot, table, dof)?;
+        if let Some(link) = links.get_mut(joint) {
+            *link = link.joined(&body);
         }
     }
     Ok(links)

@@ -2,7 +2,6 @@
 
 use super::error::RobotError;
 use super::fields::{Accepts, Fields};
-use super::provenance::Origin;
 
 /// Number of motor phases, each with the rms current.
 const PHASES: f64 = 3.0;
@@ -43,13 +42,8 @@ impl Motors {
         self.ratio[joint] * self.ratio[joint] * self.rotor_inertia[joint]
     }
 
-    pub(super) fn read(
-        mut fields: Fields,
-        dof: usize,
-        origins: &mut Vec<Origin>,
-    ) -> Result<Motors, RobotError> {
-        let ratio = fields.per_joint("ratio", dof, Accepts::Positive)?;
-        let ratio = fields.required("ratio", ratio)?;
+    pub(super) fn read(fields: &mut Fields, dof: usize) -> Result<Motors, RobotError> {
+        let ratio = fields.must("ratio", |f, key| f.per_joint(key, dof, Accepts::Positive))?;
         let torque_constant = fields.per_joint("torque_constant", dof, TORQUE_CONSTANT)?;
         let rotor_place = fields.place_of("rotor_inertia");
         let rotor_inertia = fields.per_joint("rotor_inertia", dof, Accepts::NonNegative)?;
@@ -86,15 +80,13 @@ impl Motors {
             }
             (None, None) => vec![0.0; dof],
         };
-        let motors = Motors {
+        Ok(Motors {
             rotor_inertia: rotor_inertia.unwrap_or_else(|| vec![0.0; dof]),
             torque_constant,
             loss_constant,
             peak_current: fields.per_joint("peak_current", dof, Accepts::Positive)?,
             rated_current: fields.per_joint("rated_current", dof, Accepts::Positive)?,
             ratio,
-        };
-        origins.extend(fields.finish()?);
-        Ok(motors)
+        })
     }
 }

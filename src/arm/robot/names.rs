@@ -75,15 +75,10 @@ impl Name {
         &self.kind
     }
 
-    /// Type and numbers in the order of a full name.
-    pub(super) fn written(&self) -> String {
-        format!("irb{} {}", self.kind, self.numbers.join(" "))
-    }
-
-    /// The same with reversed numbers, as in controllers.
-    pub(super) fn reversed(&self) -> String {
-        let numbers: Vec<&str> = self.numbers.iter().rev().map(String::as_str).collect();
-        format!("irb{} {}", self.kind, numbers.join(" "))
+    /// Type and numbers in the order of a full name, and with reversed numbers, as in controllers.
+    pub(super) fn spellings(&self) -> [String; 2] {
+        let reversed: Vec<String> = self.numbers.iter().rev().cloned().collect();
+        [&self.numbers, &reversed].map(|numbers| format!("irb{} {}", self.kind, numbers.join(" ")))
     }
 
     /// Match of this requested name with the full name `full`, if any.

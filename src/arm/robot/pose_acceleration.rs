@@ -13,7 +13,6 @@
 
 use super::error::RobotError;
 use super::fields::{Accepts, Fields};
-use super::provenance::Origin;
 
 /// Coefficients of these formulas; s²/rad, the last two of axis 3 without unit.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,19 +59,14 @@ impl PoseAcceleration {
         ]
     }
 
-    pub(super) fn read(
-        mut fields: Fields,
-        origins: &mut Vec<Origin>,
-    ) -> Result<PoseAcceleration, RobotError> {
+    pub(super) fn read(fields: &mut Fields) -> Result<PoseAcceleration, RobotError> {
         let axis_1 = fields.array("axis_1", Accepts::Finite)?;
         let axis_2 = fields.array("axis_2", Accepts::Finite)?;
         let axis_3 = fields.array("axis_3", Accepts::Finite)?;
-        let read = PoseAcceleration {
+        Ok(PoseAcceleration {
             axis_1: fields.required("axis_1", axis_1)?,
             axis_2: fields.required("axis_2", axis_2)?,
             axis_3: fields.required("axis_3", axis_3)?,
-        };
-        origins.extend(fields.finish()?);
-        Ok(read)
+        })
     }
 }

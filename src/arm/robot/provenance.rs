@@ -29,13 +29,8 @@ impl Provenance {
 
 impl fmt::Display for Provenance {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Provenance::Datasheet => "datasheet",
-            Provenance::Identified => "identified",
-            Provenance::Paper => "paper",
-            Provenance::Estimated => "estimated",
-            Provenance::Assumed => "assumed",
-        })
+        let word = Provenance::WORDS.iter().find(|(_, provenance)| provenance == self);
+        f.write_str(word.map_or("", |(word, _)| word))
     }
 }
 
@@ -57,27 +52,13 @@ pub struct Origin {
 /// The origins of one provenance as sentences, one per sequence of keys with the same table and
 /// source.
 pub(super) fn sentences(origins: &[Origin], provenance: Provenance) -> Vec<String> {
-    let mut sentences: Vec<String> = Vec::new();
-    let mut last: Option<(&Origin, String)> = None;
-    for origin in origins.iter().filter(|o| o.provenance == Some(provenance)) {
-        match &mut last {
-            Some((head, keys)) if head.table == origin.table && head.source == origin.source => {
-                keys.push_str(", ");
-                keys.push_str(&origin.key);
-            }
-            _ => {
-                sentences.extend(last.take().map(|(head, keys)| sentence(head, &keys, provenance)));
-                last = Some((origin, origin.key.clone()));
-            }
-        }
-    }
-    sentences.extend(last.map(|(head, keys)| sentence(head, &keys, provenance)));
-    sentences
-}
-
-fn sentence(head: &Origin, keys: &str, provenance: Provenance) -> String {
-    match &head.source {
-        Some(source) => format!("{}.{keys} ({provenance}): {source}", head.table),
-        None => format!("{}.{keys} ({provenance})", head.table),
-    }
+    let chosen = origins.iter().filter(|origin| origin.provenance == Some(provenance));
+    let chosen: Vec<&Origin> = chosen.collect();
+    let alike = |a: &&Origin, b: &&Origin| a.table == b.table && a.source == b.source;
+    let sentence = |group: &[&Origin]| {
+        let keys = group.iter().map(|origin| origin.key.as_str()).collect::<Vec<_>>().join(", ");
+        let source = group[0].source.as_ref().map_or(String::new(), |source| format!(": {source}"));
+        format!("{}.{keys} ({provenance}){source}", group[0].table)
+    };
+    chosen.chunk_by(alike).map(sentence).collect()
 }

@@ -103,7 +103,7 @@ pub fn section(text: &str, name: &str) -> Vec<Entry> {
 
 /// The line at which the file is truncated, and the evidence, if it is. A controller ends each
 /// line, closes each quote, continues no last line and writes each section that it names.
-pub fn break_off(text: &str) -> Option<(usize, &'static str)> {
+pub fn truncation(text: &str) -> Option<(usize, &'static str)> {
     let last = text.lines().count();
     let open = text.lines().position(|line| line.matches('"').count() % 2 == 1);
     if let Some(line) = open {
@@ -155,18 +155,18 @@ mod tests {
     #[test]
     fn a_name_with_nothing_behind_it_is_a_cut() {
         let cut = "MOC:CFG_1.0:6:0::\n#\nARM:\n\n -name \"a\"\n#\nARM_LOAD:\n";
-        assert_eq!(break_off(cut).map(|(line, _)| line), Some(7));
-        assert!(break_off(&format!("{cut}\n")).is_some());
-        assert_eq!(break_off("MOC:CFG_1.0:6:0::\n"), None);
+        assert_eq!(truncation(cut).map(|(line, _)| line), Some(7));
+        assert!(truncation(&format!("{cut}\n")).is_some());
+        assert_eq!(truncation("MOC:CFG_1.0:6:0::\n"), None);
     }
 
     #[test]
     fn a_file_that_breaks_off_is_told_from_a_whole_one() {
         let whole =
             "MOC:CFG_1.0:6:0::\n#\nARM:\n\n -name \"rob1_1\"\\\n -upper_joint_bound 3.1416\n";
-        assert_eq!(break_off(whole), None);
+        assert_eq!(truncation(whole), None);
         for end in (25..whole.len()).filter(|end| !whole[..*end].ends_with('\n')) {
-            assert!(break_off(&whole[..end]).is_some(), "{:?}", &whole[..end]);
+            assert!(truncation(&whole[..end]).is_some(), "{:?}", &whole[..end]);
         }
     }
 }

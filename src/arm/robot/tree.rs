@@ -133,7 +133,6 @@ impl Builder<'_> {
         outer: &Stated,
         depth: usize,
     ) -> Result<Node, RobotError> {
-        let text_of = |key: &str| table.get(key).and_then(|v| v.get_ref().as_str());
         let stated = self.stated(table, "source", "provenance", outer)?;
         let mut entries = BTreeMap::new();
         for (key, value) in table {
@@ -142,7 +141,7 @@ impl Builder<'_> {
                 continue;
             }
             let base = name.strip_suffix("_source").or_else(|| name.strip_suffix("_provenance"));
-            if base.is_some_and(|base| table.contains_key(base)) && text_of(name).is_some() {
+            if base.is_some_and(|base| table.contains_key(base)) && value.get_ref().is_str() {
                 continue;
             }
             if name.strip_suffix("_sd").is_some_and(|base| table.contains_key(base)) {
@@ -155,10 +154,9 @@ impl Builder<'_> {
                 &stated,
             )?;
             let sd_key = format!("{name}_sd");
-            own.sd = match table.get(sd_key.as_str()) {
-                Some(sd) => Some(self.deviations(&sd_key, sd, count(value.get_ref()))?),
-                None => None,
-            };
+            let sd = table.get(sd_key.as_str());
+            let sd = sd.map(|sd| self.deviations(&sd_key, sd, count(value.get_ref())));
+            own.sd = sd.transpose()?;
             let node = self.node(key.span().start, value, &own, depth + 1)?;
             entries.insert(name.to_owned(), node);
         }
@@ -205,28 +203,22 @@ impl Builder<'_> {
             Value::List(items) => items,
             _ => vec![node],
         };
-        let mut found = Vec::new();
-        for item in items {
-            match item.value {
-                Value::Number(sd) if sd >= 0.0 && sd.is_finite() => found.push(sd),
-                Value::Number(sd) => {
-                    return Err(RobotError::Value {
-                        place: place(),
-                        key: key.to_owned(),
-                        value: sd.to_string(),
-                        must: "0 or more: a standard deviation".into(),
-                    });
-                }
-                other => {
-                    return Err(RobotError::Type {
-                        place: place(),
-                        key: key.to_owned(),
-                        found: other.kind(),
-                        expected: "a number or a list of numbers".into(),
-                    });
-                }
-            }
-        }
+        let deviation = |item: Node| match item.value {
+            Value::Number(sd) if sd >= 0.0 && sd.is_finite() => Ok(sd),
+            Value::Number(sd) => Err(RobotError::Value {
+                place: place(),
+                key: key.to_owned(),
+                value: sd.to_string(),
+                must: "0 or more: a standard deviation".into(),
+            }),
+            other => Err(RobotError::Type {
+                place: place(),
+                key: key.to_owned(),
+                found: other.kind(),
+                expected: "a number or a list of numbers".into(),
+            }),
+        };
+        let found = items.into_iter().map(deviation).collect::<Result<Vec<f64>, _>>()?;
         if found.len() == 1 || found.len() == numbers {
             return Ok(found);
         }

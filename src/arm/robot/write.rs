@@ -29,20 +29,17 @@ pub fn to_toml(model: &Model) -> String {
     for (i, link) in model.links.iter().enumerate() {
         let m = &link.inertia;
         let moments = [m.m11, m.m22, m.m33, m.m12, m.m13, m.m23];
-        out.table(
-            "[[link]]",
-            &format!("link {}", i + 1),
-            &[
-                ("mass", number(link.mass)),
-                ("com", list(link.com.as_slice())),
-                ("inertia", list(&moments)),
-            ],
-        );
+        let entries = [
+            ("mass", number(link.mass)),
+            ("com", list(link.com.as_slice())),
+            ("inertia", list(&moments)),
+        ];
+        out.table(&format!("link {}", i + 1), &entries);
     }
     friction(model, &mut out);
     motors(model, &mut out);
     if model.wrist.coupling != 0.0 {
-        out.table("[wrist]", "wrist", &[("coupling", number(model.wrist.coupling))]);
+        out.table("wrist", &[("coupling", number(model.wrist.coupling))]);
     }
     power(model, &mut out);
     effects(model, &mut out);
@@ -62,8 +59,8 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    /// A table with its entries; a common origin is written once.
-    fn table(&mut self, header: &str, name: &str, entries: &[(&str, String)]) {
+    /// A table, or an entry of a list of tables such as `link 2`; a common origin is written once.
+    fn table(&mut self, name: &str, entries: &[(&str, String)]) {
         let origins = self.origins;
         let origin = |key: &str| {
             let found = origins.iter().find(|o| o.table == name && o.key == key);
@@ -71,7 +68,10 @@ impl Writer<'_> {
         };
         let first = entries.first().map_or((None, None), |(key, _)| origin(key));
         let shared = entries.iter().all(|(key, _)| origin(key) == first);
-        let _ = write!(self.text, "\n{header}\n");
+        let _ = match name.rsplit_once(' ') {
+            Some((list, _)) => writeln!(self.text, "\n[[{list}]]"),
+            None => writeln!(self.text, "\n[{name}]"),
+        };
         if shared {
             self.origin("", first);
         }
@@ -101,10 +101,10 @@ impl Writer<'_> {
 fn geometry(model: &Model, out: &mut Writer<'_>) {
     let geometry = &model.kinematics;
     if geometry.coupling == Coupling::Parallelogram {
-        out.table("[kinematics]", "kinematics", &[("coupling", quoted("parallelogram"))]);
+        out.table("kinematics", &[("coupling", quoted("parallelogram"))]);
     }
     if geometry.base != Isometry3::identity() {
-        out.table("[kinematics.base]", "kinematics.base", &pose_entries(&geometry.base));
+        out.table("kinematics.base", &pose_entries(&geometry.base));
     }
     // An OPW form recognised in a chain has rounding errors: then the chain is written.
     let as_opw = geometry.opw.as_ref().filter(|opw| {
@@ -117,16 +117,16 @@ fn geometry(model: &Model, out: &mut Writer<'_>) {
         let mut entries: Vec<(&str, String)> = names.into_iter().zip(lengths.map(number)).collect();
         entries.push(("offsets", list(&opw.offsets)));
         entries.push(("signs", list(&opw.signs)));
-        out.table("[kinematics.opw]", "kinematics.opw", &entries);
+        out.table("kinematics.opw", &entries);
         return;
     }
     if geometry.flange != Isometry3::identity() {
-        out.table("[kinematics.flange]", "kinematics.flange", &pose_entries(&geometry.flange));
+        out.table("kinematics.flange", &pose_entries(&geometry.flange));
     }
     for (i, joint) in geometry.joints.iter().enumerate() {
         let mut entries = pose_entries(&frame(joint)).to_vec();
         entries.push(("axis", list(joint.axis.as_slice())));
-        out.table("[[joint]]", &format!("joint {}", i + 1), &entries);
+        out.table(&format!("joint {}", i + 1), &entries);
     }
 }
 
@@ -148,18 +148,15 @@ fn limits(model: &Model, out: &mut Writer<'_>) {
     entries.extend(limits.torque.as_ref().map(|x| ("torque", list(x))));
     entries.extend(limits.tcp_speed.map(|x| ("tcp_speed", number(x))));
     entries.extend(limits.tcp_acceleration.map(|x| ("tcp_acceleration", number(x))));
-    out.table("[limits]", "limits", &entries);
+    out.table("limits", &entries);
     for (i, wider) in limits.position_if.iter().enumerate() {
-        out.table(
-            "[[limits.position_if]]",
-            &format!("limits.position_if {}", i + 1),
-            &[
-                ("joint", (wider.joint + 1).to_string()),
-                ("position", list(&wider.position)),
-                ("if_joint", (wider.if_joint + 1).to_string()),
-                ("if_within", list(&wider.if_within)),
-            ],
-        );
+        let entries = [
+            ("joint", (wider.joint + 1).to_string()),
+            ("position", list(&wider.position)),
+            ("if_joint", (wider.if_joint + 1).to_string()),
+            ("if_within", list(&wider.if_within)),
+        ];
+        out.table(&format!("limits.position_if {}", i + 1), &entries);
     }
 }
 
@@ -168,17 +165,17 @@ fn friction(model: &Model, out: &mut Writer<'_>) {
     let mut entries =
         vec![("coulomb", list(&friction.coulomb)), ("viscous", list(&friction.viscous))];
     entries.extend(friction.coulomb_asymmetry.as_ref().map(|x| ("coulomb_asymmetry", list(x))));
-    out.table("[friction]", "friction", &entries);
+    out.table("friction", &entries);
     if let Some(law) = &friction.stribeck {
         let entries = [("stiction", list(&law.stiction)), ("velocity", list(&law.velocity))];
-        out.table("[friction.stribeck]", "friction.stribeck", &entries);
+        out.table("friction.stribeck", &entries);
     }
     for (table, key, values) in [
         ("friction.viscous_asymmetry", "asymmetry", &friction.viscous_asymmetry),
         ("friction.load_friction", "mu", &friction.load_friction),
     ] {
         if let Some(values) = values {
-            out.table(&format!("[{table}]"), table, &[(key, list(values))]);
+            out.table(table, &[(key, list(values))]);
         }
     }
 }
@@ -191,12 +188,11 @@ fn motors(model: &Model, out: &mut Writer<'_>) {
     entries.push(("loss_constant", list(&motors.loss_constant)));
     entries.extend(motors.peak_current.as_ref().map(|x| ("peak_current", list(x))));
     entries.extend(motors.rated_current.as_ref().map(|x| ("rated_current", list(x))));
-    out.table("[motors]", "motors", &entries);
+    out.table("motors", &entries);
 }
 
 fn effects(model: &Model, out: &mut Writer<'_>) {
     for effect in &model.effects {
-        let table = format!("effects.{}", effect.id);
         let entries: Vec<(&str, String)> = effect
             .values
             .iter()
@@ -208,7 +204,7 @@ fn effects(model: &Model, out: &mut Writer<'_>) {
                 (name.as_str(), value)
             })
             .collect();
-        out.table(&format!("[{table}]"), &table, &entries);
+        out.table(&format!("effects.{}", effect.id), &entries);
     }
     // Errors of the log are in `sensors`.
     let sensors = &model.sensors;
@@ -226,8 +222,7 @@ fn effects(model: &Model, out: &mut Writer<'_>) {
             .map(|(key, values)| (key, list(values)))
             .collect();
         if !entries.is_empty() {
-            let table = format!("effects.{id}");
-            out.table(&format!("[{table}]"), &table, &entries);
+            out.table(&format!("effects.{id}"), &entries);
         }
     }
 }
@@ -238,15 +233,12 @@ fn power(model: &Model, out: &mut Writer<'_>) {
         Sharing::None => "none",
         Sharing::Bus => "bus",
     };
-    out.table(
-        "[drive]",
-        "drive",
-        &[
-            ("base_w", number(drive.base_w)),
-            ("sharing", quoted(sharing)),
-            ("regeneration", number(drive.regeneration)),
-        ],
-    );
+    let entries = [
+        ("base_w", number(drive.base_w)),
+        ("sharing", quoted(sharing)),
+        ("regeneration", number(drive.regeneration)),
+    ];
+    out.table("drive", &entries);
     if let Some(brakes) = &model.brakes {
         let has = |key: &str| model.origin_of("brakes", key).is_some();
         let entries = [
@@ -258,9 +250,9 @@ fn power(model: &Model, out: &mut Writer<'_>) {
         // An unstated 0 is omitted, so that it is estimated on reading.
         let stated = entries.iter().filter(|(key, value)| *value != 0.0 || has(key));
         let entries: Vec<_> = stated.map(|(key, value)| (*key, number(*value))).collect();
-        out.table("[brakes]", "brakes", &entries);
+        out.table("brakes", &entries);
     }
-    out.table("[standstill]", "standstill", &[("holding_w", list(&model.standstill.holding_w))]);
+    out.table("standstill", &[("holding_w", list(&model.standstill.holding_w))]);
     let controller = &model.controller;
     let mut entries = Vec::new();
     entries.extend(controller.friction_level.as_ref().map(|x| ("friction_level", list(x))));
@@ -268,6 +260,6 @@ fn power(model: &Model, out: &mut Writer<'_>) {
     entries.extend(controller.settling_s.map(|x| ("settling_s", number(x))));
     entries.extend(controller.interpolation_s.map(|x| ("interpolation_s", number(x))));
     if !entries.is_empty() {
-        out.table("[controller]", "controller", &entries);
+        out.table("controller", &entries);
     }
 }

@@ -120,7 +120,7 @@ pub fn calibrate(
     let before = plausibility(model, simulation, &account(model, simulation));
     let before = before.ok_or_else(|| Refusal::Known { name: model.name.clone() })?;
     let spread = Spread::new(model);
-    let own = Changes::of_one(model, &Plausible::nominal(model));
+    let own = Changes::from_one(model, &Plausible::nominal(model));
     let cycle = Cycle::new(model, simulation)?;
     let rough = Folded::new(model, &cycle, log, torques)?;
     let data = Data::new(&rough.along, &rough.windows);
@@ -200,7 +200,7 @@ fn check_size(
     let robots = spread.draws(model, DRAWS).robots;
     let sizes: Vec<[f64; 2]> = robots
         .par_iter()
-        .map(|robot| size(along.means(&Changes::of_one(model, robot)).power.as_slice()))
+        .map(|robot| size(along.means(&Changes::from_one(model, robot)).power.as_slice()))
         .collect();
     let measured = size(&windows.power);
     for (i, what) in ["mean power", "swing of the power"].into_iter().enumerate() {

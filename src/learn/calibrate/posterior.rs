@@ -148,7 +148,7 @@ impl Fit<'_> {
     }
 
     fn change(&self, z: &[f64]) -> Changes {
-        Changes::of_one(self.model, &self.spread.robot(self.model, |k| z[k]))
+        Changes::from_one(self.model, &self.spread.robot(self.model, |k| z[k]))
     }
 
     /// The robot that minimises the squared distance from `prior` and from the log with added

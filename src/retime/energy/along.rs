@@ -80,7 +80,7 @@ impl Slopes {
         for k in 0..count {
             let moved = |step: f64| {
                 let robot = spread.robot(model, |i| z[i] + if i == k { step } else { 0.0 });
-                Changes::of_one(model, &robot)
+                Changes::from_one(model, &robot)
             };
             let (high, low) = (moved(STEP), moved(-STEP));
             let scale = 0.5 / STEP;
@@ -89,8 +89,7 @@ impl Slopes {
                 slopes.joints[j].set_column(k, &slope);
                 slopes.loss[(j, k)] = (a.loss[0] - b.loss[0]) * scale;
             }
-            let supply = |robot: &Changes| robot.base_w[0] + robot.coils_w[0];
-            slopes.supply_w[k] = (supply(&high) - supply(&low)) * scale;
+            slopes.supply_w[k] = (high.supply_w() - low.supply_w()) * scale;
         }
         slopes
     }
@@ -120,7 +119,7 @@ impl<'a> Along<'a> {
             let power = power_at(model, &mut data, load, state);
             supplies.push(supply_w(model, &mut data, load, state, &power));
         }
-        let own = Changes::of_one(model, &Plausible::nominal(model));
+        let own = Changes::from_one(model, &Plausible::nominal(model));
         let (terms, _) = along.terms(&own);
         along.rest_w = supplies.iter().zip(terms).map(|(all, term)| all - term).collect();
         along
@@ -143,11 +142,11 @@ impl<'a> Along<'a> {
             }
             let by_joint = |j: usize| tau(j) * self.rates[i][j];
             let work: f64 = (0..self.model.dof).map(by_joint).sum();
-            let burnt = match self.model.drive.sharing {
+            let lost = match self.model.drive.sharing {
                 Sharing::Bus => (-work).max(0.0),
                 Sharing::None => (0..self.model.dof).map(|j| (-by_joint(j)).max(0.0)).sum(),
             };
-            work + copper + (1.0 - self.model.drive.regeneration) * burnt
+            work + copper + (1.0 - self.model.drive.regeneration) * lost
         });
         (terms.collect(), torques)
     }
@@ -155,18 +154,14 @@ impl<'a> Along<'a> {
     /// Means of the windows for a robot.
     pub fn means(&self, robot: &Changes) -> Means {
         let (terms, torques) = self.terms(robot);
-        let supply = robot.base_w[0] + robot.coils_w[0];
-        let mean = |window: &Range<usize>, value: &dyn Fn(usize) -> f64| {
-            window.clone().map(value).sum::<f64>() / window.len() as f64
-        };
-        let power = self.windows.iter().map(|w| mean(w, &|i| terms[i] + self.rest_w[i]) + supply);
-        let torque = torques.iter().map(|tau| {
-            DVector::from_iterator(
-                self.windows.len(),
-                self.windows.iter().map(|w| mean(w, &|i| tau[i])),
-            )
-        });
-        Means { power: DVector::from_iterator(self.windows.len(), power), torque: torque.collect() }
+        let power = self.averages(|i| terms[i] + self.rest_w[i]).add_scalar(robot.supply_w());
+        Means { power, torque: torques.iter().map(|tau| self.averages(|i| tau[i])).collect() }
+    }
+
+    /// The mean of a quantity over the instants of each window.
+    fn averages(&self, value: impl Fn(usize) -> f64) -> DVector<f64> {
+        let mean = |w: &Range<usize>| w.clone().map(&value).sum::<f64>() / w.len() as f64;
+        DVector::from_iterator(self.windows.len(), self.windows.iter().map(mean))
     }
 
     /// Derivatives of the mean powers by the latent variables, one row per window.
@@ -184,18 +179,15 @@ impl<'a> Along<'a> {
             let tau = &torques[j];
             let of_power = |i: usize| {
                 let rate = self.rates[i][j];
-                let burnt = match self.model.drive.sharing {
+                let lost = match self.model.drive.sharing {
                     Sharing::Bus => braking[i],
                     Sharing::None => tau[i] * rate < 0.0,
                 };
-                let work = if burnt { rate * (1.0 - left) } else { rate };
+                let work = if lost { rate * (1.0 - left) } else { rate };
                 2.0 * of.loss[0] * tau[i] + if self.rests[i] { 0.0 } else { work }
             };
             by_power += self.sums(j, &of_power) * &slopes.joints[j];
-            let square =
-                |w: &Range<usize>| w.clone().map(|i| tau[i] * tau[i]).sum::<f64>() / w.len() as f64;
-            let squares =
-                DVector::from_iterator(self.windows.len(), self.windows.iter().map(square));
+            let squares = self.averages(|i| tau[i] * tau[i]);
             by_power += squares * slopes.loss.row(j);
         }
         for mut row in by_power.row_iter_mut() {

@@ -60,8 +60,13 @@ impl Changes {
         }
     }
 
+    /// Base power and brake coil power of the first robot, W.
+    pub(super) fn supply_w(&self) -> f64 {
+        self.base_w[0] + self.coils_w[0]
+    }
+
     /// The difference of one robot.
-    pub fn of_one(model: &Model, robot: &Plausible) -> Changes {
+    pub fn from_one(model: &Model, robot: &Plausible) -> Changes {
         Changes::new(model, std::slice::from_ref(robot))
     }
 }

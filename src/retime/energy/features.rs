@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use crate::arm::dynamics::{
-    Data, Load, RIGID, Regressor, laws, motor_rates, regressor, sense, torque,
+    Data, Load, RIGID, Regressor, laws, motor_rates, regressor, sign, torque,
 };
 use crate::arm::robot::{MAX_DOF, Model};
 
@@ -27,8 +27,8 @@ pub(super) fn write(
 ) -> [f64; MAX_DOF] {
     let all = torque(model, data, load, q, qd, qdd);
     regressor(model, regressors, q, qd, qdd);
-    let senses = motor_rates(model, qd).map(sense);
-    let [springs, _] = laws(model, f64::INFINITY, [q, qd], &all.rigid, &senses);
+    let signs = motor_rates(model, qd).map(sign);
+    let [springs, _] = laws(model, f64::INFINITY, [q, qd], &all.rigid, &signs);
     let tau = std::array::from_fn(|j| all.rigid[j] + all.friction[j]);
     for (j, features) in features.iter_mut().enumerate() {
         let mut row = features.row_mut(row);
@@ -39,7 +39,7 @@ pub(super) fn write(
             }
         }
         let own = 1 + RIGID * (model.dof - j);
-        for (p, x) in [qdd[j], qd[j], sense(qd[j]), springs[j]].into_iter().enumerate() {
+        for (p, x) in [qdd[j], qd[j], sign(qd[j]), springs[j]].into_iter().enumerate() {
             row[own + p] = x;
         }
     }

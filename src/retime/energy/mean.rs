@@ -22,7 +22,7 @@ impl Robots {
     pub fn mean(&self, model: &Model, along: &Moments) -> Option<Model> {
         let robots = &self.draws.robots;
         let mut mean = mean(robots)?;
-        let of_mean = Changes::of_one(model, &mean);
+        let of_mean = Changes::from_one(model, &mean);
         for j in 0..model.dof {
             let square = along.squares(j, &of_mean)[0];
             let copper = robots.iter().zip(along.squares(j, self.drawn()));

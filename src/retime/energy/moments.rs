@@ -49,7 +49,7 @@ struct JointSums {
     /// ∫ φ q̇ dt.
     work: DVector<f64>,
     /// −∫ φ q̇ dt over the times of braking.
-    burnt: DVector<f64>,
+    lost: DVector<f64>,
 }
 
 impl Moments {
@@ -61,7 +61,7 @@ impl Moments {
                 moving: DMatrix::zeros(n, n),
                 resting: DMatrix::zeros(n, n),
                 work: DVector::zeros(n),
-                burnt: DVector::zeros(n),
+                lost: DVector::zeros(n),
             }
         };
         Moments { joints: (0..model.dof).map(joint).collect(), open_s: 0.0 }
@@ -90,7 +90,7 @@ impl Moments {
             sum.moving.zip_apply(&joint.moving, more);
             sum.resting.zip_apply(&joint.resting, more);
             sum.work.zip_apply(&joint.work, more);
-            sum.burnt.zip_apply(&joint.burnt, more);
+            sum.lost.zip_apply(&joint.lost, more);
         }
         self.open_s += times * other.open_s;
     }
@@ -102,12 +102,7 @@ impl Moments {
             let steps = (moving / STEP).ceil().clamp(STEPS.0, STEPS.1);
             let h = moving / steps;
             let times = (0..steps as usize).flat_map(|i| POINTS.map(|x| h * (i as f64 + x)));
-            let states: Vec<[Joints; 3]> = times
-                .map(|t| {
-                    let state = run.at(t);
-                    [state.q, state.qd, state.qdd]
-                })
-                .collect();
+            let states: Vec<[Joints; 3]> = times.map(|t| run.at(t).list()).collect();
             self.sum(model, &run.load, &states, 0.5 * h);
             self.open_s += moving;
         }
@@ -132,7 +127,7 @@ impl Moments {
             .map(|joint| DMatrix::zeros(states.len(), joint.work.len()))
             .collect();
         let mut rates = vec![[0.0; MAX_DOF]; states.len()];
-        let mut burns = vec![[false; MAX_DOF]; states.len()];
+        let mut brakes = vec![[false; MAX_DOF]; states.len()];
         let resting = states.iter().all(|[_, qd, qdd]| qd.iter().chain(qdd).all(|x| *x == 0.0));
         for (k, [q, qd, qdd]) in states.iter().enumerate() {
             let scratch = (&mut data, &mut rows);
@@ -141,10 +136,10 @@ impl Moments {
             for j in 0..model.dof {
                 power += tau[j] * qd[j];
                 rates[k][j] = qd[j];
-                burns[k][j] = tau[j] * qd[j] < 0.0;
+                brakes[k][j] = tau[j] * qd[j] < 0.0;
             }
             if model.drive.sharing == Sharing::Bus {
-                burns[k] = [power < 0.0; MAX_DOF];
+                brakes[k] = [power < 0.0; MAX_DOF];
             }
         }
         for (j, (joint, phi)) in self.joints.iter_mut().zip(&features).enumerate() {
@@ -152,10 +147,10 @@ impl Moments {
             gram.gemm(weight, &phi.transpose(), phi, 1.0);
             let qd = DVector::from_iterator(states.len(), rates.iter().map(|rate| rate[j]));
             joint.work.gemv_tr(weight, phi, &qd, 1.0);
-            let burnt = burns.iter().zip(&rates);
-            let burnt = burnt.map(|(burns, rate)| if burns[j] { -rate[j] } else { 0.0 });
-            let burnt = DVector::from_iterator(states.len(), burnt);
-            joint.burnt.gemv_tr(weight, phi, &burnt, 1.0);
+            let lost = brakes.iter().zip(&rates);
+            let lost = lost.map(|(brakes, rate)| if brakes[j] { -rate[j] } else { 0.0 });
+            let lost = DVector::from_iterator(states.len(), lost);
+            joint.lost.gemv_tr(weight, phi, &lost, 1.0);
         }
     }
 
@@ -192,7 +187,7 @@ impl Moments {
                 parts.friction_j += linear(&joint.work, own + 1..own + 3);
                 parts.mechanical_j += linear(&joint.work, 1..own + 1);
                 parts.mechanical_j += linear(&joint.work, own + 3..own + 4);
-                parts.drive_j += left * linear(&joint.burnt, 1..values.len());
+                parts.drive_j += left * linear(&joint.lost, 1..values.len());
             }
         }
         all

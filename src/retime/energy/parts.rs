@@ -1,6 +1,6 @@
 //! The six parts of the energy.
 
-use std::ops::{Add, AddAssign, Mul, Sub};
+use std::ops::{Add, AddAssign, Mul};
 
 /// Energy by cause, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -46,13 +46,6 @@ impl Add for EnergyParts {
     type Output = EnergyParts;
     fn add(self, other: EnergyParts) -> EnergyParts {
         self.zip(other, |a, b| a + b)
-    }
-}
-
-impl Sub for EnergyParts {
-    type Output = EnergyParts;
-    fn sub(self, other: EnergyParts) -> EnergyParts {
-        self.zip(other, |a, b| a - b)
     }
 }
 

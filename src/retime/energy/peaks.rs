@@ -69,8 +69,7 @@ impl<'s> Sample<'s> {
                 (t, most) = (near, torque);
             }
         }
-        let state = self.run.at(t);
-        Instant { load: self.run.load.clone(), state: [state.q, state.qd, state.qdd] }
+        Instant { load: self.run.load.clone(), state: self.run.at(t).list() }
     }
 }
 

@@ -45,7 +45,7 @@ pub fn power(model: &Model, data: &mut Data, load: &Load, state: &JointState) ->
 /// The same for any number of joints, at position, velocity and acceleration.
 pub fn power_at(model: &Model, data: &mut Data, load: &Load, state: [&[f64]; 3]) -> Power {
     let [q, qd, qdd] = state;
-    of_torque(model, qd, &torque(model, data, load, q, qd, qdd))
+    from_torque(model, qd, &torque(model, data, load, q, qd, qdd))
 }
 
 /// [`power`] in several states together, which is faster.
@@ -53,10 +53,10 @@ pub fn power_at(model: &Model, data: &mut Data, load: &Load, state: [&[f64]; 3])
 fn power_each<const N: usize>(model: &Model, load: &Load, states: &[JointState; N]) -> [Power; N] {
     let lists = states.each_ref().map(|s| -> [&[f64]; 3] { [&s.q, &s.qd, &s.qdd] });
     let torques = torque_each(model, load, lists);
-    std::array::from_fn(|k| of_torque(model, &states[k].qd, &torques[k]))
+    std::array::from_fn(|k| from_torque(model, &states[k].qd, &torques[k]))
 }
 
-fn of_torque(model: &Model, qd: &[f64], Torque { rigid, friction }: &Torque) -> Power {
+fn from_torque(model: &Model, qd: &[f64], Torque { rigid, friction }: &Torque) -> Power {
     let all = std::array::from_fn(|j| rigid[j] + friction[j]);
     let motor = motor_torques(model, all);
     let rates = motor_rates(model, qd);

@@ -150,7 +150,7 @@ impl Averaged {
         }
         let mut qd = [0.0; DOF];
         for (delay, c) in self.edges {
-            let q = self.turned(t - delay);
+            let q = self.displacement(t - delay);
             for j in 0..DOF {
                 qd[j] += c * q[j];
             }
@@ -159,7 +159,7 @@ impl Averaged {
     }
 
     /// q − q₀ of the unaveraged motion.
-    fn turned(&self, t: f64) -> Joints {
+    fn displacement(&self, t: f64) -> Joints {
         if t <= 0.0 {
             [0.0; DOF]
         } else if t >= self.profile.duration() {

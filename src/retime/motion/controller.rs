@@ -67,7 +67,7 @@ impl Planning {
     }
 }
 
-/// Joint limits under the current settings.
+/// Joint limits of the planner.
 #[derive(Clone, Debug)]
 pub struct MotionLimits {
     /// rad/s².
@@ -76,22 +76,22 @@ pub struct MotionLimits {
     pub torque: Joints,
 }
 
-/// The limits of the robot with a share of its accelerations; without accelerations in its file
-/// they follow from [`TO_FULL_SPEED_S`].
-pub fn motion_limits(model: &Model, share: f64) -> MotionLimits {
-    let list = |values: &Option<Vec<f64>>, factor: f64| -> Joints {
-        std::array::from_fn(|j| {
-            values.as_ref().and_then(|v| v.get(j)).map_or(f64::INFINITY, |x| x * factor)
-        })
+/// The limits of the robot; without accelerations in its file they follow from [`TO_FULL_SPEED_S`].
+pub fn motion_limits(model: &Model) -> MotionLimits {
+    let acceleration = match &model.limits.acceleration {
+        Some(list) => joint_limits(Some(list)),
+        None => {
+            let speed = joint_limits(model.limits.velocity.as_ref());
+            std::array::from_fn(|j| speed[j] / TO_FULL_SPEED_S[j])
+        }
     };
-    let acceleration = if model.limits.acceleration.is_some() {
-        list(&model.limits.acceleration, share)
-    } else {
-        let speed = list(&model.limits.velocity, share);
-        std::array::from_fn(|j| speed[j] / TO_FULL_SPEED_S[j])
-    };
-    let torque = list(&model.torque_bounds().cloned(), 1.0);
-    MotionLimits { acceleration, torque }
+    MotionLimits { acceleration, torque: joint_limits(model.torque_bounds()) }
+}
+
+/// One limit per joint, infinite where the list has none.
+pub fn joint_limits(list: Option<&Vec<f64>>) -> Joints {
+    let limit = |j: usize| list.and_then(|list| list.get(j)).copied();
+    std::array::from_fn(|j| limit(j).unwrap_or(f64::INFINITY))
 }
 
 /// Assumptions of a simulation for missing figures of the robot file.

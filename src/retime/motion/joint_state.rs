@@ -18,4 +18,9 @@ impl JointState {
     pub fn rest(q: Joints) -> JointState {
         JointState { q, qd: [0.0; DOF], qdd: [0.0; DOF] }
     }
+
+    /// q, q̇, q̈ as a list.
+    pub fn list(&self) -> [Joints; 3] {
+        [self.q, self.qd, self.qdd]
+    }
 }

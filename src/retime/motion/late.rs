@@ -4,6 +4,7 @@
 //! the other points. So the intervals with an excess are lengthened in small steps until no limit
 //! is exceeded.
 
+use super::controller::joint_limits;
 use super::sampling::Loaded;
 use super::stream::{Piece, Stream};
 use crate::arm::dynamics::{Data, torque};
@@ -52,15 +53,10 @@ struct Limits {
 
 impl Limits {
     fn new(model: &Model) -> Limits {
-        let list = |limits: &Option<Vec<f64>>| -> Joints {
-            let limit = |j: usize| limits.as_ref().and_then(|limits| limits.get(j)).copied();
-            std::array::from_fn(|j| limit(j).unwrap_or(f64::INFINITY))
-        };
-        let limits = &model.limits;
         Limits {
-            velocity: list(&limits.velocity),
-            acceleration: list(&limits.acceleration),
-            torque: list(&model.torque_bounds().cloned()),
+            velocity: joint_limits(model.limits.velocity.as_ref()),
+            acceleration: joint_limits(model.limits.acceleration.as_ref()),
+            torque: joint_limits(model.torque_bounds()),
         }
     }
 

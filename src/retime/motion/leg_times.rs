@@ -32,7 +32,7 @@ struct Search {
 
 /// The fastest profile in which no timed leg is faster than its time; `None` if a round has no
 /// profile. A leg that cannot keep its time takes longer.
-pub(super) fn in_time(
+pub(super) fn timed_profile(
     grid: &PathGrid,
     limits: &PathLimits,
     legs: &[TimedLeg],

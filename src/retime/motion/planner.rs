@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::averaged::Averaged;
 use super::controller::{MotionLimits, Planning};
-use super::leg_times::{TimedLeg, in_time};
+use super::leg_times::{TimedLeg, timed_profile};
 use super::pace::{Pace, pace};
 use super::sampling::{self, Loaded, SpeedCap};
 use super::tcp_limits;
@@ -42,12 +42,11 @@ pub fn plan(
     let nodes = sampling::nodes(loaded.model, path, caps, INTERVALS);
     let limits = PathLimits::new(limits.acceleration, limits.torque).map_err(|_| NoTiming)?;
     let task = Task { loaded, path, nodes: &nodes, limits: &limits, planning, times };
-    let planned = task.plan(caps)?;
+    let mut planned = task.plan(caps)?;
     if !tcp_limits::limited(&caps[path.legs()]) {
         return Ok(planned);
     }
     let mut tightened = caps.to_vec();
-    let mut planned = planned;
     for _ in 0..TIGHTENINGS {
         let worst = tcp_limits::worst(loaded.model, path, caps, &planned.0);
         let excess = |leg: usize| worst.get(leg).copied().filter(|x| *x > 1.0 + TCP_TOLERANCE);
@@ -92,7 +91,7 @@ impl Task<'_> {
         let asked = &self.times[path.legs()];
         let profile = if asked.iter().any(Option::is_some) {
             let legs = self.timed_legs();
-            let profile = in_time(&grid, limits, &legs, fastest).ok_or(NoTiming)?;
+            let profile = timed_profile(&grid, limits, &legs, fastest).ok_or(NoTiming)?;
             exact(profile, &legs)
         } else {
             fastest

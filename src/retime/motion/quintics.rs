@@ -13,15 +13,13 @@ pub(super) struct Quintics {
 impl Quintics {
     /// With these values, first and second derivatives at `begin` and `length` later (s).
     pub(super) fn new(begin: f64, length: f64, from: [Joints; 3], to: [Joints; 3]) -> Quintics {
-        let h = length;
         let mut coefficients = [[0.0; DOF]; 6];
         for j in 0..DOF {
-            let scaled = |at: &[Joints; 3]| [at[0][j], at[1][j] * h, at[2][j] * h * h];
-            let unit = quintic(scaled(&from), scaled(&to));
+            let unit = quintic(length, from.map(|x| x[j]), to.map(|x| x[j]));
             let mut scale = 1.0;
             for (power, c) in unit.into_iter().enumerate() {
                 coefficients[power][j] = c * scale;
-                scale /= h;
+                scale /= length;
             }
         }
         Quintics { begin, coefficients }
@@ -40,10 +38,7 @@ impl Quintics {
         for j in 0..DOF {
             at[0][j] = c0[j] + x * (c1[j] + x * (c2[j] + x * (c3[j] + x * (c4[j] + x * c5[j]))));
         }
-        for j in 0..DOF {
-            let rest = 3.0 * c3[j] + x * (4.0 * c4[j] + x * 5.0 * c5[j]);
-            at[1][j] = c1[j] + x * (2.0 * c2[j] + x * rest);
-        }
+        at[1] = self.first(t);
         for j in 0..DOF {
             at[2][j] = 2.0 * c2[j] + x * (6.0 * c3[j] + x * (12.0 * c4[j] + x * 20.0 * c5[j]));
         }

@@ -10,6 +10,8 @@ use super::sampling::{Loaded, SpeedCap};
 use super::stream::Stream;
 use super::tcp_limits;
 use super::timed::TimedMotion;
+use crate::arm::dynamics::Load;
+use crate::arm::robot::Model;
 use crate::rapid::builtins::MoveForm;
 use crate::rapid::ir::movement::{Movement, Settings};
 use crate::retime::path::{Leg, LegKind, build};
@@ -26,36 +28,109 @@ pub(super) struct Planned {
     pub settling_s: f64,
 }
 
-/// Plans the legs of movements; `times` are their `\T` under the overrides (s), `settings` those of
-/// the first movement.
-pub(super) fn plan_run(
-    loaded: Loaded<'_>,
-    legs: &[Leg],
-    movements: &[Movement],
-    times: &[Option<f64>],
-    settings: &Settings,
-) -> Planned {
-    match as_stream(legs, movements, times) {
-        Some(stream) => realise(loaded, stream, Planning::new(loaded.model, settings)),
-        None => plan_paths(loaded, legs, movements, times, settings),
-    }
+/// A run that is not yet planned.
+pub(super) struct RunDraft {
+    pub(super) movements: Vec<Movement>,
+    pub(super) legs: Vec<Leg>,
+    /// `\T` of the movements under the overrides, s.
+    pub(super) times: Vec<Option<f64>>,
+    pub(super) load: Load,
+    /// Settings of the first movement.
+    pub(super) settings: Arc<Settings>,
 }
 
-/// The stream of a run of timed `MoveAbsJ`, if all zones reach half the distance of their points.
-fn as_stream(legs: &[Leg], movements: &[Movement], times: &[Option<f64>]) -> Option<Stream> {
-    if movements.iter().any(|movement| movement.form != MoveForm::AbsJ) {
-        return None;
+impl RunDraft {
+    /// Keeps the first `count` movements; the robot stops after them.
+    pub(super) fn truncate(&mut self, count: usize) {
+        self.movements.truncate(count);
+        self.legs.truncate(count);
+        self.times.truncate(count);
     }
-    let intervals: Option<Vec<f64>> = times.iter().copied().collect();
-    // Distances between points only: the start position does not limit zones of later points.
-    for pair in legs.windows(2) {
-        let apart = pair[1].target.translation.vector - pair[0].target.translation.vector;
-        if pair[0].zone.tcp < 0.5 * apart.norm() {
-            return None;
+
+    pub(super) fn plan(&self, model: &Model) -> Planned {
+        let loaded = Loaded { model, load: &self.load };
+        let planning = Planning::new(model, &self.settings);
+        match self.as_stream() {
+            Some(stream) => realise(loaded, stream, planning),
+            None => self.plan_paths(loaded, planning),
         }
     }
-    let points = legs.iter().map(|leg| leg.end).collect();
-    Stream::new(legs[0].start, points, intervals?).ok()
+
+    /// The stream of a run of timed `MoveAbsJ`, if all zones reach half the distance of their
+    /// points.
+    fn as_stream(&self) -> Option<Stream> {
+        if self.movements.iter().any(|movement| movement.form != MoveForm::AbsJ) {
+            return None;
+        }
+        let intervals: Option<Vec<f64>> = self.times.iter().copied().collect();
+        // Distances between points only: the start position does not limit zones of later points.
+        for pair in self.legs.windows(2) {
+            let apart = pair[1].target.translation.vector - pair[0].target.translation.vector;
+            if pair[0].zone.tcp < 0.5 * apart.norm() {
+                return None;
+            }
+        }
+        let points = self.legs.iter().map(|leg| leg.end).collect();
+        Stream::new(self.legs[0].start, points, intervals?).ok()
+    }
+
+    fn plan_paths(&self, loaded: Loaded<'_>, planning: Planning) -> Planned {
+        let RunDraft { movements, legs, times, .. } = self;
+        let model = loaded.model;
+        let caps: Vec<SpeedCap> =
+            legs.iter().zip(movements).map(|(leg, movement)| cap(leg, movement)).collect();
+        // An early end needs a larger acceleration than the rest of the motion.
+        let planning = if tcp_limits::limited(&caps) { planning.complete() } else { planning };
+        let limits = motion_limits(model);
+        let mut pieces = vec![(0.0, Pace::None); legs.len()];
+        let (paths, mut problem) = match build(model, legs) {
+            Ok(paths) => (paths, None),
+            Err(error) => {
+                // Estimate the time by joint movements to the same points.
+                let joint: Vec<Leg> =
+                    legs.iter().map(|leg| Leg { kind: LegKind::Joint, ..leg.clone() }).collect();
+                let hint = "its time is estimated joint by joint, the real one is longer";
+                let problem = Some((error.leg(), format!("{error}; {hint}")));
+                (build(model, &joint).unwrap_or_default(), problem)
+            }
+        };
+        let mut motions = Vec::new();
+        let mut t = 0.0;
+        for path in paths {
+            let path = Arc::new(path);
+            let indices = path.legs();
+            let (motion, paces) = match plan(loaded, &path, &caps, &limits, &planning, times) {
+                Ok(planned) => planned,
+                Err(error) => {
+                    problem = Some((indices.start, error.to_string()));
+                    break;
+                }
+            };
+            // Without space for a zone the robot stops as at a stop point.
+            if let (Some(last), false) = (indices.start.checked_sub(1), motions.is_empty()) {
+                let settling = settling_after(pieces[last].1, &planning);
+                pieces[last].0 += settling;
+                t += settling;
+            }
+            let mut before = 0.0;
+            for (leg, pace) in indices.zip(paces) {
+                let at = motion.time_at(path.leg_end(leg));
+                pieces[leg].0 += at - before;
+                pieces[leg].1 = pace;
+                before = at;
+            }
+            let duration = motion.duration();
+            motions.push((t, motion));
+            t += duration;
+        }
+        if problem.is_some() {
+            for (_, pace) in &mut pieces {
+                *pace = Pace::Estimated;
+            }
+        }
+        let settling_s = settling_after(pieces[pieces.len() - 1].1, &planning);
+        Planned { motions, pieces, problem, settling_s }
+    }
 }
 
 fn realise(loaded: Loaded<'_>, stream: Stream, planning: Planning) -> Planned {
@@ -77,70 +152,6 @@ fn realise(loaded: Loaded<'_>, stream: Stream, planning: Planning) -> Planned {
     let settling_s = if count > 1 { planning.settling_s } else { settling_after(pace, &planning) };
     let motions = vec![(0.0, TimedMotion::Stream(stream))];
     Planned { motions, pieces, problem: None, settling_s }
-}
-
-fn plan_paths(
-    loaded: Loaded<'_>,
-    legs: &[Leg],
-    movements: &[Movement],
-    times: &[Option<f64>],
-    settings: &Settings,
-) -> Planned {
-    let model = loaded.model;
-    let caps: Vec<SpeedCap> =
-        legs.iter().zip(movements).map(|(leg, movement)| cap(leg, movement)).collect();
-    let planning = Planning::new(model, settings);
-    // An early end needs a larger acceleration than the rest of the motion.
-    let planning = if tcp_limits::limited(&caps) { planning.complete() } else { planning };
-    let limits = motion_limits(model, 1.0);
-    let mut pieces = vec![(0.0, Pace::None); legs.len()];
-    let (paths, mut problem) = match build(model, legs) {
-        Ok(paths) => (paths, None),
-        Err(error) => {
-            // Estimate the time by joint movements to the same points.
-            let joint: Vec<Leg> =
-                legs.iter().map(|leg| Leg { kind: LegKind::Joint, ..leg.clone() }).collect();
-            let hint = "its time is estimated joint by joint, the real one is longer";
-            let problem = Some((error.leg(), format!("{error}; {hint}")));
-            (build(model, &joint).unwrap_or_default(), problem)
-        }
-    };
-    let mut motions = Vec::new();
-    let mut t = 0.0;
-    for path in paths {
-        let path = Arc::new(path);
-        let indices = path.legs();
-        let (motion, paces) = match plan(loaded, &path, &caps, &limits, &planning, times) {
-            Ok(planned) => planned,
-            Err(error) => {
-                problem = Some((indices.start, error.to_string()));
-                break;
-            }
-        };
-        // Without space for a zone the robot stops as at a stop point.
-        if let (Some(last), false) = (indices.start.checked_sub(1), motions.is_empty()) {
-            let settling = settling_after(pieces[last].1, &planning);
-            pieces[last].0 += settling;
-            t += settling;
-        }
-        let mut before = 0.0;
-        for (leg, pace) in indices.zip(paces) {
-            let at = motion.time_at(path.leg_end(leg));
-            pieces[leg].0 += at - before;
-            pieces[leg].1 = pace;
-            before = at;
-        }
-        let duration = motion.duration();
-        motions.push((t, motion));
-        t += duration;
-    }
-    if problem.is_some() {
-        for (_, pace) in &mut pieces {
-            *pace = Pace::Estimated;
-        }
-    }
-    let settling_s = settling_after(pieces[pieces.len() - 1].1, &planning);
-    Planned { motions, pieces, problem, settling_s }
 }
 
 fn settling_after(pace: Pace, planning: &Planning) -> f64 {

@@ -83,7 +83,10 @@ pub fn nodes(model: &Model, path: &JointPath, caps: &[SpeedCap], count: usize) -
         nodes.extend([first, length - last]);
     }
     // Uniform in each zone, independent of its pieces.
-    nodes.extend(zones(path).into_iter().flat_map(zone_nodes));
+    for (begin, end) in zones(path) {
+        let node = |i: usize| begin + (end - begin) * i as f64 / ZONE_INTERVALS as f64;
+        nodes.extend((0..=ZONE_INTERVALS).map(node));
+    }
     nodes.sort_by(f64::total_cmp);
     let apart = NODE_DISTANCE.0.min(NODE_DISTANCE.1 * length);
     let mut kept: Vec<f64> = Vec::with_capacity(nodes.len());
@@ -146,11 +149,9 @@ impl SpeedBounds<'_> {
 
 /// Start and end of each zone in s.
 fn zones(path: &JointPath) -> Vec<(f64, f64)> {
-    let is_zone =
-        |piece: &Piece| matches!(piece.kind, PieceKind::CartesianZone | PieceKind::JointZone);
     let mut zones: Vec<(f64, f64)> = Vec::new();
     let mut corner = None;
-    for piece in path.pieces().iter().filter(|piece| is_zone(piece)) {
+    for piece in path.pieces().iter().filter(|piece| piece.kind.is_zone()) {
         let end = piece.s + piece.length;
         // Zones may touch; each lies around the end of one leg.
         let before = piece.leg.checked_sub(1).map_or(0.0, |leg| path.leg_end(leg));
@@ -163,11 +164,6 @@ fn zones(path: &JointPath) -> Vec<(f64, f64)> {
         corner = Some(around);
     }
     zones
-}
-
-/// The edges of a zone and nodes between them.
-fn zone_nodes((begin, end): (f64, f64)) -> impl Iterator<Item = f64> {
-    (0..=ZONE_INTERVALS).map(move |i| begin + (end - begin) * i as f64 / ZONE_INTERVALS as f64)
 }
 
 /// The grid at these nodes with the speed caps of the legs.

@@ -32,20 +32,12 @@ pub fn simulate(
     let execution = execute(program, entry, &mut machine);
     machine.flush();
     machine.lay_out();
-    machine.tell_length();
-    let mut assumptions = execution.assumed;
-    assumptions.append(&mut machine.assumed);
-    assumptions.extend(assumed(model).filter(|_| machine.moved));
-    let mut unresolved = execution.unresolved;
-    unresolved.append(&mut machine.notes);
-    unresolved.sort_by_key(|note| note.span);
-    let count = machine.events.len();
-    Simulation {
-        events: machine.events,
-        cycle_s: machine.time,
-        repeats_from: machine.repeats_from.filter(|first| *first < count),
-        unresolved,
-        assumed: assumptions,
-        inputs_asked: machine.asked,
-    }
+    machine.note_limit();
+    let about_limits = assumed(model).filter(|_| machine.moved);
+    let mut simulation = machine.into_simulation();
+    simulation.assumed = [execution.assumed, simulation.assumed].concat();
+    simulation.assumed.extend(about_limits);
+    simulation.unresolved = [execution.unresolved, simulation.unresolved].concat();
+    simulation.unresolved.sort_by_key(|note| note.span);
+    simulation
 }

@@ -4,6 +4,7 @@ use crate::arm::dynamics::Data;
 use crate::arm::robot::Model;
 use crate::retime::energy::power::power;
 use crate::retime::motion::Simulation;
+use crate::retime::motion::controller::joint_limits;
 use crate::retime::motion::timeline::{Run, What};
 use crate::retime::path::joint_path::{DOF, Joints};
 
@@ -11,12 +12,12 @@ use crate::retime::path::joint_path::{DOF, Joints};
 const STEP: f64 = 0.002;
 
 /// Smallest allowed share of a limit: a joint at rest has holding torque and moves by rounding.
-const LEAST: f64 = 0.02;
+const LEAST_SHARE: f64 = 0.02;
 /// Smallest allowed share of an assumed limit for motions that the program does not contain.
-const OTHER_WAYS: f64 = 0.5;
+const NEW_MOTION_SHARE: f64 = 0.5;
 
 /// Joint loads.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Loads {
     /// rad/s².
     pub acceleration: Joints,
@@ -29,22 +30,17 @@ pub struct Loads {
 impl Loads {
     /// The limits of the robot.
     pub fn limits(model: &Model) -> Loads {
-        let limits = &model.limits;
         Loads {
-            acceleration: list(limits.acceleration.as_ref()),
-            jerk: list(limits.jerk.as_ref()),
-            torque: if model.has_dynamics() {
-                list(limits.torque.as_ref())
-            } else {
-                [f64::INFINITY; DOF]
-            },
+            acceleration: joint_limits(model.limits.acceleration.as_ref()),
+            jerk: joint_limits(model.limits.jerk.as_ref()),
+            torque: joint_limits(model.limits.torque.as_ref().filter(|_| model.has_dynamics())),
         }
     }
 
     /// Loads that a stream may use. A known limit is used in full; an assumed limit is lowered to
     /// the largest load of the program, which the robot can execute.
     pub fn shown(model: &Model, simulation: &Simulation) -> Loads {
-        let mut most = Loads { acceleration: NONE, jerk: NONE, torque: NONE };
+        let mut most = Loads::default();
         for event in &simulation.events {
             if let What::Run(run) = &event.what {
                 most.raise(model, run);
@@ -53,7 +49,7 @@ impl Loads {
         let limits = Loads::limits(model);
         let within = |key: &str, limit: Joints, most: Joints| -> Joints {
             let is_known = model.is_known("limits", key);
-            let shown = |j: usize| limit[j].min(most[j]).max(LEAST * limit[j]);
+            let shown = |j: usize| limit[j].min(most[j]).max(LEAST_SHARE * limit[j]);
             std::array::from_fn(|j| if is_known { limit[j] } else { shown(j) })
         };
         Loads {
@@ -64,12 +60,12 @@ impl Loads {
     }
 
     /// Loads for motions that the program does not contain and that move other joints: at least
-    /// [`OTHER_WAYS`] of the limits.
+    /// [`NEW_MOTION_SHARE`] of the limits.
     #[must_use]
-    pub fn for_other_ways(&self, model: &Model) -> Loads {
+    pub fn for_new_motions(&self, model: &Model) -> Loads {
         let limits = Loads::limits(model);
         let half = |limit: Joints, own: Joints| -> Joints {
-            std::array::from_fn(|j| own[j].max(OTHER_WAYS * limit[j]))
+            std::array::from_fn(|j| own[j].max(NEW_MOTION_SHARE * limit[j]))
         };
         Loads {
             acceleration: half(limits.acceleration, self.acceleration),
@@ -98,8 +94,6 @@ impl Loads {
     }
 }
 
-const NONE: Joints = [0.0; DOF];
-
 /// Number and length (s) of the sample steps in a duration.
 pub(super) fn steps(duration: f64) -> (usize, f64) {
     let count = (duration / STEP).ceil().max(1.0);
@@ -110,9 +104,4 @@ pub(super) fn raise(most: &mut Joints, now: &Joints) {
     for j in 0..DOF {
         most[j] = most[j].max(now[j].abs());
     }
-}
-
-pub(super) fn list(limits: Option<&Vec<f64>>) -> Joints {
-    let limit = |j: usize| limits.and_then(|limits| limits.get(j)).copied();
-    std::array::from_fn(|j| limit(j).unwrap_or(f64::INFINITY))
 }

@@ -32,11 +32,11 @@ pub(super) struct Attempt {
     pub(super) stream: Stream,
     pub(super) check: Check,
     /// The unrounded stream, from which polishing may continue.
-    pub(super) intended: Intended,
+    pub(super) fit: Fit,
 }
 
 /// A reference motion and a stream that approximates it.
-pub(super) struct Intended {
+pub(super) struct Fit {
     reference: Reference,
     stream: Stream,
 }
@@ -44,47 +44,47 @@ pub(super) struct Intended {
 impl RunProblem<'_> {
     /// The original motion as the start of polishing, if the margins leave no timing on the path:
     /// it keeps all limits and takes this time.
-    pub(super) fn as_before(
+    pub(super) fn fit_original(
         &self,
         reason: Reason,
         budget: f64,
         margins: &Margins,
-    ) -> Result<Intended, Reason> {
+    ) -> Result<Fit, Reason> {
         match self.task.run.motions.as_slice() {
             [(_, motion)]
                 if reason == Reason::NoSaving && round_down(motion.duration()) <= budget =>
             {
                 let state = |t: f64| (motion.at(t).q, motion.at(t).qd);
-                self.intend_near(motion.duration(), &state, budget, margins)
+                self.fit_motion(motion.duration(), &state, budget, margins)
             }
             _ => Err(reason),
         }
     }
 
     /// A stream of this duration (s) fitted to a profile.
-    pub(super) fn intend(
+    pub(super) fn fit_profile(
         &self,
         profile: &Profile,
         duration: f64,
         margins: &Margins,
-    ) -> Result<Intended, Reason> {
+    ) -> Result<Fit, Reason> {
         let end = profile.duration();
         let motion = |t: f64| {
             let (s, v, _) = if t < end { profile.at(t) } else { (self.path.length(), 0.0, 0.0) };
             let point = self.path.eval(s);
             (point.q, point.q1.map(|x| x * v))
         };
-        self.intend_near(end, &motion, duration, margins)
+        self.fit_motion(end, &motion, duration, margins)
     }
 
     /// A stream of this duration fitted to a motion that takes `time`, both in s.
-    fn intend_near(
+    fn fit_motion(
         &self,
         time: f64,
         motion: &dyn Fn(f64) -> (Joints, Joints),
         duration: f64,
         margins: &Margins,
-    ) -> Result<Intended, Reason> {
+    ) -> Result<Fit, Reason> {
         let failed = |why: &str| Reason::NoStream(why.to_owned());
         let samples = (time / REFERENCE_STEP).ceil().max(8.0) as usize;
         let reference =
@@ -115,7 +115,7 @@ impl RunProblem<'_> {
         let fit = fit_stream(&reference, intervals, &self.limits, &self.lever)
             .map_err(|error| failed(&error.to_string()))?;
         match fit {
-            StreamFit::Fitted(fitted) => Ok(Intended { reference, stream: fitted.stream }),
+            StreamFit::Fitted(fitted) => Ok(Fit { reference, stream: fitted.stream }),
             StreamFit::TooFast { .. } => {
                 Err(failed("speed, acceleration and jerk leave no stream in this time"))
             }
@@ -124,22 +124,22 @@ impl RunProblem<'_> {
     }
 
     /// Polishes the stream, rounds its points to the digits of the emitted code and checks it.
-    pub(super) fn realise(&self, intended: Intended, margins: &Margins) -> Result<Attempt, Reason> {
-        let Intended { reference, stream } = intended;
+    pub(super) fn realise(&self, fit: Fit, margins: &Margins) -> Result<Attempt, Reason> {
+        let Fit { reference, stream } = fit;
         let plant = RunPlant {
             problem: self,
             margins,
-            ceilings: self.corridor.eased(margins.reach, EASING),
+            ceilings: self.corridor.smoothed_ceilings(margins.reach, EASING),
         };
-        let penalty = PathPenalty { tolerance: self.looseness(), lever: self.lever };
+        let penalty = PathPenalty { tolerance: self.free_distance(), lever: self.lever };
         let polished =
             polish_stream(&stream, &reference, &plant, &self.limits, &self.model, &penalty)
                 .map_err(|error| Reason::NoStream(error.to_string()))?;
         let rounded = rounded_points(&polished.stream)
             .map_err(|error| Reason::NoStream(error.to_string()))?;
         let check = self.check(&rounded);
-        let intended = Intended { reference, stream: polished.stream };
-        Ok(Attempt { stream: rounded, check, intended })
+        let fit = Fit { reference, stream: polished.stream };
+        Ok(Attempt { stream: rounded, check, fit })
     }
 
     /// Time in which the TCP travels at most the length that the zones of two points cover, s.

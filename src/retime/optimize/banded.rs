@@ -18,9 +18,9 @@ impl Banded {
         i * (self.width + 1) + self.width + j - i
     }
 
-    /// Adds to the entry at (i, j) and its mirror; i ≥ j ≥ i − width.
+    /// Adds to the entry at (i, j) and its mirror; |i − j| ≤ width.
     pub(super) fn add(&mut self, i: usize, j: usize, value: f64) {
-        let index = self.index(i, j);
+        let index = self.index(i.max(j), i.min(j));
         self.entries[index] += value;
     }
 

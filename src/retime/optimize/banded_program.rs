@@ -31,6 +31,10 @@ impl Row {
     fn value(&self, x: &[f64]) -> f64 {
         self.terms.iter().map(|(i, weight)| weight * x[*i]).sum()
     }
+
+    fn is_soft(&self) -> bool {
+        self.price.is_finite()
+    }
 }
 
 /// An optimum within the required gap.
@@ -76,6 +80,11 @@ struct Direction {
 }
 
 impl BandedProgram {
+    /// The rows with their states.
+    fn rows<'a>(&'a self, states: &'a [State]) -> impl Iterator<Item = (&'a Row, &'a State)> {
+        self.rows.iter().zip(states)
+    }
+
     /// Solves the program to a gap relative to 1 + |objective|. None if it does not converge.
     pub(super) fn solve(&self, gap: f64) -> Option<Optimum> {
         let mut x = vec![0.0; self.gradient.len()];
@@ -86,12 +95,9 @@ impl BandedProgram {
                 return Some(Optimum { x, cost: residuals.cost });
             }
             let factor = self.factor(&states)?;
-            let mut reductions: Vec<(f64, f64)> = self
-                .rows
-                .iter()
-                .zip(&states)
-                .map(|(row, state)| (state.lambda * state.w, state.violation(row)))
-                .collect();
+            let products =
+                |(row, state): (&Row, &State)| (state.lambda * state.w, state.violation(row));
+            let mut reductions: Vec<(f64, f64)> = self.rows(&states).map(products).collect();
             let mut direction = self.direction(&factor, &states, &residuals, &reductions);
             if !self.rows.is_empty() {
                 reductions = self.corrected(&reductions, &states, &residuals, &direction);
@@ -111,18 +117,16 @@ impl BandedProgram {
     fn residuals(&self, x: &[f64], states: &[State]) -> Residuals {
         let curved = self.matrix.times(x);
         let mut dual: Vec<f64> = curved.iter().zip(&self.gradient).map(|(h, g)| h + g).collect();
-        for (row, state) in self.rows.iter().zip(states) {
+        for (row, state) in self.rows(states) {
             for (i, weight) in &row.terms {
                 dual[*i] += weight * state.lambda;
             }
         }
-        let rows = || self.rows.iter().zip(states);
+        let primal = |(row, state): (&Row, &State)| row.value(x) - state.s + state.w - row.bound;
         Residuals {
             dual,
-            primal: rows()
-                .map(|(row, state)| row.value(x) - state.s + state.w - row.bound)
-                .collect(),
-            complement: rows().map(|(row, state)| state.complement(row)).sum(),
+            primal: self.rows(states).map(primal).collect(),
+            complement: self.rows(states).map(|(row, state)| state.complement(row)).sum(),
             cost: self.cost(x, &curved, states),
         }
     }
@@ -130,11 +134,11 @@ impl BandedProgram {
     /// The factor of H with the rows eliminated. None if it is not positive definite.
     fn factor(&self, states: &[State]) -> Option<Cholesky> {
         let mut matrix = self.matrix.clone();
-        for (row, state) in self.rows.iter().zip(states) {
+        for (row, state) in self.rows(states) {
             let weight = 1.0 / state.compliance(row);
             for (n, (i, a)) in row.terms.iter().enumerate() {
                 for (j, b) in &row.terms[..=n] {
-                    matrix.add(*i.max(j), *i.min(j), weight * a * b);
+                    matrix.add(*i, *j, weight * a * b);
                 }
             }
         }
@@ -150,9 +154,7 @@ impl BandedProgram {
         reductions: &[(f64, f64)],
     ) -> Direction {
         let shifts: Vec<f64> = self
-            .rows
-            .iter()
-            .zip(states)
+            .rows(states)
             .zip(reductions.iter().zip(&residuals.primal))
             .map(|((row, state), ((c_w, c_s), primal))| {
                 let soft = if row.is_soft() { c_s / state.mu(row) } else { 0.0 };
@@ -167,9 +169,7 @@ impl BandedProgram {
         }
         let x = factor.solve(right);
         let states = self
-            .rows
-            .iter()
-            .zip(states)
+            .rows(states)
             .zip(reductions.iter().zip(&shifts))
             .map(|((row, state), ((c_w, c_s), shift))| {
                 let lambda = row.value(&x) / state.compliance(row) + shift;
@@ -193,12 +193,9 @@ impl BandedProgram {
     ) -> Vec<(f64, f64)> {
         let pairs: usize = self.rows.iter().map(|row| if row.is_soft() { 2 } else { 1 }).sum();
         let reach = self.reach(states, &predictor.states);
-        let ahead: f64 = self
-            .rows
-            .iter()
-            .zip(states.iter().zip(&predictor.states))
-            .map(|(row, (state, change))| state.moved(change, reach).complement(row))
-            .sum();
+        let ahead = self.rows(states).zip(&predictor.states);
+        let ahead: f64 =
+            ahead.map(|((row, state), change)| state.moved(change, reach).complement(row)).sum();
         let mean = residuals.complement / pairs as f64;
         let centre = mean * (ahead / residuals.complement).powi(3);
         reductions
@@ -211,14 +208,14 @@ impl BandedProgram {
     fn cost(&self, x: &[f64], curved: &[f64], states: &[State]) -> f64 {
         let smooth: f64 =
             x.iter().zip(curved).zip(&self.gradient).map(|((x, h), g)| x * (0.5 * h + g)).sum();
-        let soft = self.rows.iter().zip(states).filter(|(row, _)| row.is_soft());
+        let soft = self.rows(states).filter(|(row, _)| row.is_soft());
         smooth + soft.map(|(row, state)| row.price * state.s).sum::<f64>()
     }
 
     /// The largest step, at most slightly over 1, that keeps all slacks and multipliers positive.
     fn reach(&self, states: &[State], changes: &[State]) -> f64 {
         let mut reach: f64 = 1.0 / TO_BOUNDARY;
-        for (row, (state, change)) in self.rows.iter().zip(states.iter().zip(changes)) {
+        for ((row, state), change) in self.rows(states).zip(changes) {
             let mut bound = |value: f64, change: f64| {
                 if change < 0.0 {
                     reach = reach.min(-value / change);
@@ -242,12 +239,6 @@ impl Residuals {
         self.complement <= gap * size
             && self.primal.iter().all(|r| r.abs() <= RESIDUAL)
             && self.dual.iter().all(|r| r.abs() <= RESIDUAL * size)
-    }
-}
-
-impl Row {
-    fn is_soft(&self) -> bool {
-        self.price.is_finite()
     }
 }
 

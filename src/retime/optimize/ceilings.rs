@@ -1,9 +1,10 @@
 //! Speed ceilings of a stream: at most the speeds of the movements that it replaces.
 
-use super::allowed::{Loads, list, raise, steps};
+use super::allowed::{Loads, raise, steps};
 use super::freedom::{Bound, Freedom};
 use crate::arm::robot::Model;
 use crate::rapid::builtins::MoveForm;
+use crate::retime::motion::controller::joint_limits;
 use crate::retime::motion::timeline::{MoveRecord, Run};
 use crate::retime::path::Leg;
 use crate::retime::path::joint_path::{DOF, Joints};
@@ -88,5 +89,5 @@ fn reached(model: &Model, run: &Run, record: &MoveRecord, leg: &Leg) -> Ceiling 
 
 /// Joint speeds of a robot, rad/s.
 pub(super) fn speeds(model: &Model) -> Joints {
-    list(model.limits.velocity.as_ref())
+    joint_limits(model.limits.velocity.as_ref())
 }

@@ -47,11 +47,22 @@ pub struct Check {
 }
 
 impl Check {
+    /// The used share of each limit with its name.
+    fn shares(&self) -> [(&'static str, f64); 7] {
+        [
+            ("joint speed", self.velocity),
+            ("joint acceleration", self.acceleration),
+            ("jerk", self.jerk),
+            ("torque", self.torque),
+            ("TCP speed", self.tcp_speed),
+            ("distance from the path", self.deviation),
+            ("distance of the points' polygon from the path", self.polygon),
+        ]
+    }
+
     /// The largest share of a limit.
     pub fn worst(&self) -> f64 {
-        [self.velocity, self.acceleration, self.jerk, self.torque, self.tcp_speed, self.polygon]
-            .into_iter()
-            .fold(self.deviation, f64::max)
+        self.shares().into_iter().map(|(_, share)| share).fold(0.0, f64::max)
     }
 
     /// True if no limit is exceeded.
@@ -61,23 +72,13 @@ impl Check {
 
     /// The most exceeded limit in words, for a check that does not hold.
     pub fn fault(&self) -> String {
-        let figures = [
-            ("joint speed", self.velocity),
-            ("joint acceleration", self.acceleration),
-            ("jerk", self.jerk),
-            ("torque", self.torque),
-            ("TCP speed", self.tcp_speed),
-            ("distance from the path", self.deviation),
-            ("distance of the points' polygon from the path", self.polygon),
-        ];
-        let worst = figures.into_iter().fold(("", 0.0), |a, b| if b.1 > a.1 { b } else { a });
-        if self.worst() <= 1.0 && self.in_range {
-            return format!("the arm would come {:.0} mm too near", 1e3 * self.intrusion_m);
+        let (limit, share) =
+            self.shares().into_iter().fold(("", 0.0), |a, b| if b.1 > a.1 { b } else { a });
+        match (share <= 1.0, self.in_range) {
+            (true, true) => format!("the arm would come {:.0} mm too near", 1e3 * self.intrusion_m),
+            (true, false) => "a joint would leave its range".to_owned(),
+            (false, _) => format!("{limit} would be {:.1} % of what is allowed", 100.0 * share),
         }
-        if self.worst() <= 1.0 {
-            return "a joint would leave its range".to_owned();
-        }
-        format!("{} would be {:.1} % of what is allowed", worst.0, 100.0 * worst.1)
     }
 
     /// The larger of each figure.

@@ -68,7 +68,7 @@ pub struct Offset {
 }
 
 /// Lowers the tolerances of the polygon near both ends of a path.
-fn near_stops(places: &mut [Place]) {
+fn tighten_near_stops(places: &mut [Place]) {
     let stops = [0, places.len() - 1].map(|i| places[i].pose.translation.vector);
     for place in places {
         let distances = stops.map(|stop| (place.pose.translation.vector - stop).norm());
@@ -85,27 +85,25 @@ impl Corridor {
         let mut places = Vec::new();
         for piece in path.pieces() {
             let movement = &run.moves[piece.leg].movement;
-            let zone = &run.legs[piece.leg].zone;
-            let before = piece.leg.checked_sub(1).map(|leg| &run.legs[leg].zone);
+            let before = piece.leg.checked_sub(1);
             // A piece of a zone takes the ceiling of the leg before or after its corner.
             let ceiling = ceilings.moves[piece.leg];
+            let is_after_corner = path.leg_end(piece.leg) > piece.s + piece.length + 1e-9;
+            // The other leg at the corner of a zone, and the leg at whose end the zone is.
+            let (corner, rounded) = match piece.kind.is_zone() {
+                true if is_after_corner => (before, before),
+                true => (Some(piece.leg + 1), Some(piece.leg)),
+                false => (None, None),
+            };
             let tolerance = match piece.kind {
                 PieceKind::Joint => JOINT_TOLERANCE,
                 PieceKind::Cartesian => LINE_TOLERANCE,
                 PieceKind::CartesianZone | PieceKind::JointZone => {
-                    let after = path.leg_end(piece.leg) > piece.s + piece.length + 1e-9;
-                    let size = if after { before.map_or(0.0, |z| z.tcp) } else { zone.tcp };
+                    let size = rounded.map_or(0.0, |leg| run.legs[leg].zone.tcp);
                     LINE_TOLERANCE.max(ZONE_TOLERANCE * size)
                 }
             };
             // The path is free in a corner if it is free in both movements.
-            let corner = match piece.kind {
-                PieceKind::CartesianZone | PieceKind::JointZone => {
-                    let after = path.leg_end(piece.leg) > piece.s + piece.length + 1e-9;
-                    if after { piece.leg.checked_sub(1) } else { Some(piece.leg + 1) }
-                }
-                PieceKind::Joint | PieceKind::Cartesian => None,
-            };
             let other = corner.and_then(|leg| run.moves.get(leg)).map(|record| &record.movement);
             let movements = std::iter::once(movement).chain(other);
             let free = movements
@@ -138,7 +136,7 @@ impl Corridor {
             let place = |pose| Place { pose, ceiling, tolerance, polygon, stop_tolerance };
             places.extend(poses.into_iter().map(place));
         }
-        near_stops(&mut places);
+        tighten_near_stops(&mut places);
         Some(Corridor { places, ceilings, end: run.end })
     }
 
@@ -146,20 +144,15 @@ impl Corridor {
     pub fn offset(&self, pose: &Isometry3<f64>, from: &mut usize) -> Offset {
         let begin = from.saturating_sub(WINDOW.0);
         let end = (*from + WINDOW.1).min(self.places.len() - 1);
-        let mut best = (f64::INFINITY, *from);
-        for i in begin..=end {
-            let distance = self.distance(pose, i);
-            if distance < best.0 {
-                best = (distance, i);
-            }
-        }
-        *from = best.1;
-        let place = &self.places[best.1];
+        let distances = (begin..=end).map(|i| (self.distance(pose, i), i));
+        let (distance, nearest) = first_least(distances, *from);
+        *from = nearest;
+        let place = &self.places[nearest];
         // At the boundary of two stretches the larger tolerance holds.
-        let lo = &self.places[best.1.saturating_sub(1)];
-        let hi = &self.places[(best.1 + 1).min(self.places.len() - 1)];
+        let lo = &self.places[nearest.saturating_sub(1)];
+        let hi = &self.places[(nearest + 1).min(self.places.len() - 1)];
         Offset {
-            distance: best.0,
+            distance,
             tolerance: place.tolerance.max(lo.tolerance).max(hi.tolerance),
             polygon: place.polygon.max(lo.polygon).max(hi.polygon),
             ceiling: place.ceiling.max(&lo.ceiling).max(&hi.ceiling),
@@ -168,10 +161,10 @@ impl Corridor {
 
     /// TCP speed ceilings of all places, smoothed: each lower ceiling is extended by `reach` (m)
     /// to both sides and rises beyond with `acceleration` (m/s²).
-    pub fn eased(&self, reach: f64, acceleration: f64) -> Vec<f64> {
+    pub fn smoothed_ceilings(&self, reach: f64, acceleration: f64) -> Vec<f64> {
         let last = self.places.len() - 1;
         let n = (reach / SPACING).ceil() as usize;
-        let mut eased: Vec<f64> = (0..=last)
+        let mut smoothed: Vec<f64> = (0..=last)
             .map(|i| {
                 let around = i.saturating_sub(n)..=(i + n).min(last);
                 self.places[around].iter().map(|p| p.ceiling.tcp).fold(f64::INFINITY, f64::min)
@@ -183,12 +176,12 @@ impl Corridor {
         };
         let rise = |from: f64, d: f64| (from * from + 2.0 * acceleration * d).sqrt();
         for i in 0..last {
-            eased[i + 1] = eased[i + 1].min(rise(eased[i], step(i)));
+            smoothed[i + 1] = smoothed[i + 1].min(rise(smoothed[i], step(i)));
         }
         for i in (0..last).rev() {
-            eased[i] = eased[i].min(rise(eased[i + 1], step(i)));
+            smoothed[i] = smoothed[i].min(rise(smoothed[i + 1], step(i)));
         }
-        eased
+        smoothed
     }
 
     /// The largest speeds at a place.
@@ -232,8 +225,7 @@ impl Corridor {
             (pose.translation.vector - place.pose.translation.vector).norm_squared() + turn * turn
         };
         let nearest = |range: &mut dyn Iterator<Item = usize>| {
-            let pairs = range.map(|i| (square(&self.places[i]), i));
-            pairs.fold((f64::INFINITY, 0), |a, b| if b.0 < a.0 { b } else { a }).1
+            first_least(range.map(|i| (square(&self.places[i]), i)), 0).1
         };
         let last = self.places.len() - 1;
         let window = from.saturating_sub(2 * STRIDE)..=(*from + AHEAD).min(last);
@@ -261,6 +253,11 @@ impl Corridor {
         let neighbours = [i.saturating_sub(1), (i + 1).min(last)];
         neighbours.map(aside).into_iter().fold(f64::INFINITY, f64::min)
     }
+}
+
+/// The first pair of the least number; `otherwise` if there is none.
+fn first_least(pairs: impl Iterator<Item = (f64, usize)>, otherwise: usize) -> (f64, usize) {
+    pairs.fold((f64::INFINITY, otherwise), |a, b| if b.0 < a.0 { b } else { a })
 }
 
 /// Difference of two orientations; for small angles its length is the angle, rad.

@@ -8,7 +8,7 @@ use super::cone::{Affine, ConeProgram, ConeStatus};
 
 /// Energy of a run over its duration: points (s, J) with rising time on a convex curve.
 #[derive(Clone, Debug, PartialEq)]
-pub struct TradeOff {
+pub struct EnergyCurve {
     points: Vec<(f64, f64)>,
 }
 
@@ -38,10 +38,10 @@ const REFINEMENT: usize = 12;
 const LONGER: i32 = 4;
 const SHORTER: i32 = 6;
 
-impl TradeOff {
+impl EnergyCurve {
     /// The curve from the shortest to the longest time (s) through known points of rising time.
     /// `None` without a finite point.
-    pub fn through(known: &[Known], (shortest, longest): (f64, f64)) -> Option<TradeOff> {
+    pub fn through(known: &[Known], (shortest, longest): (f64, f64)) -> Option<EnergyCurve> {
         let (first, last) = (*known.first()?, *known.last()?);
         let between = |from: f64, to: f64, energy: &dyn Fn(f64) -> f64| -> Vec<(f64, f64)> {
             let time = |i: usize| from + (to - from) * i as f64 / REFINEMENT as f64;
@@ -52,11 +52,11 @@ impl TradeOff {
         let inside = known.windows(2).flat_map(|pair| {
             between(pair[0].time, pair[1].time, &|t| hermite(pair[0], pair[1], t))
         });
-        TradeOff::new(quicker.into_iter().chain(inside).chain(slower).collect())
+        EnergyCurve::new(quicker.into_iter().chain(inside).chain(slower).collect())
     }
 
     /// The lower convex hull of points (s, J); `None` without a finite point.
-    pub fn new(mut points: Vec<(f64, f64)>) -> Option<TradeOff> {
+    pub fn new(mut points: Vec<(f64, f64)>) -> Option<EnergyCurve> {
         points.retain(|(t, e)| t.is_finite() && e.is_finite());
         points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
         points.dedup_by(|later, earlier| later.0 == earlier.0);
@@ -69,7 +69,7 @@ impl TradeOff {
             }
             hull.push(point);
         }
-        (!hull.is_empty()).then_some(TradeOff { points: hull })
+        (!hull.is_empty()).then_some(EnergyCurve { points: hull })
     }
 
     /// Shortest and longest time, s.
@@ -142,7 +142,7 @@ pub struct Cycle {
 
 impl Cycle {
     /// The duration of each run (s) for least total energy. `None` if the takt is too short.
-    pub fn share(&self, curves: &[TradeOff]) -> Option<Vec<f64>> {
+    pub fn share(&self, curves: &[EnergyCurve]) -> Option<Vec<f64>> {
         let arrivals =
             self.parts.iter().filter(|part| matches!(part, Part::Arrival { .. })).count();
         let runs = curves.len();
@@ -189,7 +189,7 @@ impl Cycle {
         let solution = program.solve();
         match solution.status {
             ConeStatus::Solved | ConeStatus::AlmostSolved => {
-                let within = |(t, curve): (&f64, &TradeOff)| {
+                let within = |(t, curve): (&f64, &EnergyCurve)| {
                     let (shortest, longest) = curve.range();
                     t.clamp(shortest, longest)
                 };
@@ -199,30 +199,34 @@ impl Cycle {
         }
     }
 
-    /// Duration of the cycle without the rest of the takt, s, if its runs take `times` (s).
-    pub fn time(&self, times: &[f64]) -> f64 {
-        let now = |ends: &[f64]| ends.last().copied().unwrap_or(0.0);
+    /// The end of each part, s, if the runs take `times` (s).
+    fn ends(&self, times: &[f64]) -> Vec<f64> {
         let mut ends: Vec<f64> = Vec::with_capacity(self.parts.len());
         for part in &self.parts {
-            ends.push(now(&ends) + part_time(part, times, &ends));
+            ends.push(ends.last().copied().unwrap_or(0.0) + part_time(part, times, &ends));
         }
-        now(&ends)
+        ends
+    }
+
+    /// Duration of the cycle without the rest of the takt, s, if its runs take `times` (s).
+    pub fn time(&self, times: &[f64]) -> f64 {
+        self.ends(times).last().copied().unwrap_or(0.0)
     }
 
     /// Energy of the runs and of all standstills up to the takt, J, if the runs take `times` (s)
     /// and `energies` (J).
     pub fn energy(&self, times: &[f64], energies: &[f64]) -> f64 {
-        let mut ends: Vec<f64> = Vec::with_capacity(self.parts.len());
-        let mut energy = 0.0;
-        for part in &self.parts {
-            let time = part_time(part, times, &ends);
-            energy += match part {
-                Part::Run(run) => energies[*run],
-                Part::Fixed(_) => 0.0,
-                Part::Arrival { holding_w, .. } => holding_w * time,
-            };
-            ends.push(ends.last().copied().unwrap_or(0.0) + time);
-        }
+        let ends = self.ends(times);
+        let energy = self.parts.iter().enumerate().fold(0.0, |energy, (i, part)| {
+            energy
+                + match part {
+                    Part::Run(run) => energies[*run],
+                    Part::Fixed(_) => 0.0,
+                    Part::Arrival { holding_w, .. } => {
+                        holding_w * part_time(part, times, &ends[..i])
+                    }
+                }
+        });
         energy + self.resting_w * (self.takt - self.time(times)).max(0.0)
     }
 }
@@ -253,9 +257,9 @@ mod tests {
     }
 
     /// a / t: short durations cost more.
-    fn curve(a: f64) -> TradeOff {
+    fn curve(a: f64) -> EnergyCurve {
         let times = (0..=400).map(|i| 1.0 + 0.01 * f64::from(i));
-        TradeOff::new(times.map(|t| (t, a / t)).collect()).expect("points")
+        EnergyCurve::new(times.map(|t| (t, a / t)).collect()).expect("points")
     }
 
     #[test]
@@ -275,7 +279,7 @@ mod tests {
         let known = |t: f64| Known { time: t, energy: energy(t), slope: -270.0 / t.powi(4) };
         let worst = |times: &[f64]| {
             let known: Vec<Known> = times.iter().map(|t| known(*t)).collect();
-            let curve = TradeOff::through(&known, (0.9, 2.0)).expect("points");
+            let curve = EnergyCurve::through(&known, (0.9, 2.0)).expect("points");
             assert_eq!(curve.range(), (0.9, 2.0));
             let errors = curve.points.iter().map(|(t, e)| (e - energy(*t)).abs() / energy(*t));
             errors.fold(0.0, f64::max)
@@ -325,7 +329,7 @@ mod tests {
         let parts = [Part::Run(0)];
         let free = Cycle { resting_w: 0.0, ..cycle(&parts, 4.0) };
         // Beyond 2 s a slower run needs more energy.
-        let bowl = TradeOff::new(
+        let bowl = EnergyCurve::new(
             (10..=50).map(f64::from).map(|t| (t / 10.0, (t / 10.0 - 2.0).powi(2))).collect(),
         );
         let bowl = [bowl.expect("points")];
@@ -345,8 +349,8 @@ mod tests {
 
     #[test]
     fn only_the_convex_hull_counts() {
-        let curve = TradeOff::new(vec![(1.0, 4.0), (2.0, 5.0), (3.0, 0.0), (2.5, 3.0)]);
-        assert_eq!(curve, Some(TradeOff { points: vec![(1.0, 4.0), (3.0, 0.0)] }));
-        assert_eq!(TradeOff::new(vec![(f64::NAN, 1.0)]), None);
+        let curve = EnergyCurve::new(vec![(1.0, 4.0), (2.0, 5.0), (3.0, 0.0), (2.5, 3.0)]);
+        assert_eq!(curve, Some(EnergyCurve { points: vec![(1.0, 4.0), (3.0, 0.0)] }));
+        assert_eq!(EnergyCurve::new(vec![(f64::NAN, 1.0)]), None);
     }
 }

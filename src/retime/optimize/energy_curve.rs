@@ -1,10 +1,10 @@
 //! Least energy of a run as a function of its time.
 
-use super::cycle::{Known, TradeOff};
+use super::cycle::{EnergyCurve, Known};
 use super::energy_program::{EnergyBound, energy_bound, minimize_energy};
 use super::margins::Margins;
 use super::path_energy::evaluate;
-use super::run_problem::{RunProblem, Task, fastest_profile};
+use super::run_problem::{INTERVALS, RunProblem, Task, fastest_profile};
 use crate::retime::energy::account;
 use crate::retime::motion::timing::grid::PathGrid;
 use crate::retime::motion::timing::limits::PathLimits;
@@ -40,7 +40,7 @@ pub struct TimeEnergy {
 pub fn pareto(task: &Task<'_>, count: usize) -> Vec<TimeEnergy> {
     let curve = || {
         let problem = RunProblem::new(task).ok()?;
-        let (grid, limits) = problem.bare_grid(&Margins::none()).ok()?;
+        let (grid, limits) = problem.bare_grid(&Margins::none(), INTERVALS).ok()?;
         let fast = fastest_profile(&grid, &limits).ok()?;
         let (run, robot) = (task.run, task.model);
         let least = RESERVE_OF_CURVE * fast.duration();
@@ -82,18 +82,18 @@ impl<'a> Curve<'a> {
     /// current time of the run. `None` if no stream is possible.
     pub fn new(task: &'a Task<'a>, shortest: f64, longest: f64) -> Option<Curve<'a>> {
         let problem = RunProblem::new(task).ok()?;
-        let (grid, limits) = problem.grid_of(&Margins::first(problem.tolerance()), COARSE).ok()?;
+        let (grid, limits) = problem.grid(&Margins::first(problem.tolerance()), COARSE).ok()?;
         let fast = fastest_profile(&grid, &limits).ok()?;
         // The shortest time may be below the least time on the coarse grid.
         let reserve = RESERVE * fast.duration() + task.run.settling;
         let shortest = if shortest > 0.0 { shortest } else { reserve };
         let range = (shortest, longest.max(shortest));
         let mut curve = Curve { problem, grid, limits, fast, known: Vec::new(), range };
-        curve.learn(task.run.duration()).then_some(curve)
+        curve.add_point(task.run.duration()).then_some(curve)
     }
 
     /// Computes the energy at a time (s) unless a point is near. Returns whether one was added.
-    pub fn learn(&mut self, time: f64) -> bool {
+    pub fn add_point(&mut self, time: f64) -> bool {
         let least = RESERVE * self.fast.duration() + self.problem.task.run.settling;
         let time = time.clamp(self.range.0, self.range.1).max(least);
         let place = self.known.partition_point(|(known, _)| known.time < time);
@@ -148,8 +148,8 @@ impl<'a> Curve<'a> {
     }
 
     /// The curve through the computed points.
-    pub fn trade_off(&self) -> Option<TradeOff> {
+    pub fn energy_curve(&self) -> Option<EnergyCurve> {
         let known: Vec<Known> = self.known.iter().map(|(known, _)| *known).collect();
-        TradeOff::through(&known, self.range)
+        EnergyCurve::through(&known, self.range)
     }
 }

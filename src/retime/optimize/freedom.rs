@@ -10,16 +10,17 @@ use crate::rapid::ir::movement::Movement;
 use crate::rapid::text::Span;
 
 /// The bound on a quantity of a stream.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Bound {
     /// The largest value of the movements themselves.
+    #[default]
     Original,
     /// The limits of the robot.
     Robot,
 }
 
-/// What a stream may change relative to its original movements.
-#[derive(Clone, Debug, PartialEq)]
+/// What a stream may change relative to its original movements; by default nothing.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Freedom {
     /// TCP speed along lines and arcs; [`Bound::Original`] includes their programmed speed.
     pub tcp: Bound,
@@ -36,18 +37,6 @@ pub struct Freedom {
 }
 
 impl Freedom {
-    /// No freedom.
-    pub fn none() -> Freedom {
-        Freedom {
-            tcp: Bound::Original,
-            joints: Bound::Original,
-            loads: None,
-            deviation: 0.0,
-            freed: BTreeSet::new(),
-            keep_out: Vec::new(),
-        }
-    }
-
     /// Largest joint loads.
     pub fn loads(&self, model: &Model) -> Loads {
         self.loads.unwrap_or_else(|| Loads::limits(model))

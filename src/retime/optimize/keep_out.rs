@@ -55,12 +55,6 @@ pub(super) fn enters(body: &Body<'_>, run: &Run) -> bool {
 /// Duration below which a stretch of a stream is not halved again, s.
 const FINEST: f64 = 1e-4;
 
-/// A stretch of a piece: time (s) and clearance (m) at both ends.
-struct Stretch {
-    begin: (f64, f64),
-    end: (f64, f64),
-}
-
 /// A lower bound of the clearance of arm and tool (m) along the realised motion of a stream and
 /// along the polygon of its points: the clearance at both ends of a stretch less the largest
 /// displacement in between. Stretches of small clearance are halved.
@@ -70,13 +64,13 @@ pub(super) fn least_room(model: &Model, body: &Body<'_>, stream: &Stream) -> f64
     for piece in stream.pieces().chain(stream.polygon()) {
         let room = |t: f64| (t, body.margins(&piece.at(t).0)[0]);
         let fastest = reach * turning(model, &piece);
-        let mut open = vec![Stretch { begin: room(0.0), end: room(piece.length) }];
-        while let Some(Stretch { begin, end }) = open.pop() {
+        // Stretches by time (s) and clearance (m) at both ends.
+        let mut open = vec![[room(0.0), room(piece.length)]];
+        while let Some([begin, end]) = open.pop() {
             let between = 0.5 * (begin.1 + end.1 - fastest * (end.0 - begin.0));
             if between < 0.0 && end.0 - begin.0 > FINEST {
                 let middle = room(0.5 * (begin.0 + end.0));
-                open.push(Stretch { begin, end: middle });
-                open.push(Stretch { begin: middle, end });
+                open.extend([[begin, middle], [middle, end]]);
             } else {
                 least = least.min(between);
             }

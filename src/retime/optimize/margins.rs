@@ -71,16 +71,7 @@ impl Margins {
 
     /// No margins.
     pub(super) fn none() -> Margins {
-        Margins {
-            load: 1.0,
-            speed: 1.0,
-            reach: 0.0,
-            spacing: 0.0,
-            polygon: 0.0,
-            edges: f64::INFINITY,
-            distance: 1.0,
-            room: 0.0,
-        }
+        Margins { load: 1.0, reach: 0.0, distance: 1.0, room: 0.0, ..Margins::first(0.0) }
     }
 
     /// The largest used share of the limits that apply.

@@ -269,8 +269,7 @@ impl<'a, P: Plant> PolishProblem<'a, P> {
                     curve += 2.0 * per * (friction + self.model.speed) * a.w1 * b.w1;
                 }
                 curve += 2.0 * price * a.w * b.w * lever[a.joint] * lever[b.joint] * normal;
-                let (i, j) = (a.index.max(b.index), a.index.min(b.index));
-                model.matrix.add(i, j, curve);
+                model.matrix.add(a.index, b.index, curve);
             }
         }
         self.add_brakes(place, lin, &columns, model);
@@ -330,8 +329,7 @@ impl<'a, P: Plant> PolishProblem<'a, P> {
             for (n, a) in columns.iter().enumerate() {
                 model.gradient[a.index] += slope * by[n];
                 for (m, b) in columns[..=n].iter().enumerate() {
-                    let (i, j) = (a.index.max(b.index), a.index.min(b.index));
-                    model.matrix.add(i, j, curvature * by[n] * by[m]);
+                    model.matrix.add(a.index, b.index, curvature * by[n] * by[m]);
                 }
             }
         };

@@ -124,9 +124,7 @@ impl Reason {
             Reason::NeedsSetting(_) => "needs-setting",
         }
     }
-}
 
-impl Reason {
     /// True if a change that a user may want was refused; false if there is nothing to do.
     pub fn is_refusal(&self) -> bool {
         !matches!(
@@ -150,90 +148,73 @@ impl Reason {
 
 impl std::fmt::Display for Reason {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}: ", self.code())?;
-        match self {
-            Reason::FirstMovement => {
-                f.write_str("the first movement brings the robot to a known place")
-            }
-            Reason::UnknownStart(why) => write!(f, "where it starts is not known ({why})"),
-            Reason::NotConstant(what) | Reason::Meanwhile(what) => f.write_str(what),
-            Reason::InlineTarget => f.write_str(
+        let words: &str = match self {
+            Reason::FirstMovement => "the first movement brings the robot to a known place",
+            Reason::UnknownStart(why) => &format!("where it starts is not known ({why})"),
+            Reason::InlineTarget => {
                 "its target stands in the movement itself, where no guard sees that ModPos changes \
-                 it: give the target a name, or allow it with --inline-targets",
-            ),
-            Reason::Unresolved(why)
-            | Reason::Path(why)
-            | Reason::Handler(why)
-            | Reason::Interrupt(why)
-            | Reason::NoStream(why)
-            | Reason::Verification(why) => f.write_str(why),
-            Reason::UncertainSaving(share) => write!(
-                f,
+                 it: give the target a name, or allow it with --inline-targets"
+            }
+            Reason::NotConstant(words)
+            | Reason::Meanwhile(words)
+            | Reason::Unresolved(words)
+            | Reason::Path(words)
+            | Reason::Handler(words)
+            | Reason::Interrupt(words)
+            | Reason::NoStream(words)
+            | Reason::Verification(words) => words,
+            Reason::UncertainSaving(share) => &format!(
                 "it saves in {:.0} % of the robots that are plausible, which is not enough: \
                  joulepath robots show says how well its figures are known, joulepath calibrate narrows them",
                 100.0 * share
             ),
-            Reason::AsksMore(joint, share) => write!(
-                f,
+            Reason::AsksMore(joint, share) => &format!(
                 "joint {joint} would need no more torque than in the original cycle in {:.0} % of the \
                  robots that are plausible, which is not enough: its limit is not known",
                 100.0 * share
             ),
-            Reason::NotReached => f.write_str("it does not run in the simulated cycle"),
-            Reason::CompactIf => f.write_str("a compact IF holds one statement only"),
-            Reason::Instruction(name) => write!(f, "{name} does more than move"),
-            Reason::Timed => f.write_str("it has its time already (\\T)"),
-            Reason::Argument(name) => write!(f, "the argument \\{name} is not modelled"),
-            Reason::Setting(name) => write!(f, "{name} is in force"),
+            Reason::NotReached => "it does not run in the simulated cycle",
+            Reason::CompactIf => "a compact IF holds one statement only",
+            Reason::Instruction(name) => &format!("{name} does more than move"),
+            Reason::Timed => "it has its time already (\\T)",
+            Reason::Argument(name) => &format!("the argument \\{name} is not modelled"),
+            Reason::Setting(name) => &format!("{name} is in force"),
             Reason::ExternalAxes => {
-                f.write_str("its targets move external axes, or where they stood is not known")
+                "its targets move external axes, or where they stood is not known"
             }
-            Reason::LogicBetween => f.write_str("other statements stand between fly-by movements"),
-            Reason::EarlyOutput => f.write_str(
-                "an output is set while its last movement, which does not stop, is under way",
-            ),
-            Reason::Scattered => {
-                f.write_str("its fly-by movements go on in another routine or branch")
+            Reason::LogicBetween => "other statements stand between fly-by movements",
+            Reason::EarlyOutput => {
+                "an output is set while its last movement, which does not stop, is under way"
             }
-            Reason::Overlapping => {
-                f.write_str("it begins or ends at another statement in another execution")
+            Reason::Scattered => "its fly-by movements go on in another routine or branch",
+            Reason::Overlapping => "it begins or ends at another statement in another execution",
+            Reason::FliesOn => "it ends in a zone, and what comes behind it may move on",
+            Reason::Already => {
+                "the program has streams of joulepath; start from the original to time it anew"
             }
-            Reason::FliesOn => {
-                f.write_str("it ends in a zone, and what comes behind it may move on")
-            }
-            Reason::Already => f.write_str(
-                "the program has streams of joulepath; start from the original to time it anew",
-            ),
             Reason::OwnName(name) => {
-                write!(f, "the program declares {name} itself, which streams need as RAPID has it")
+                &format!("the program declares {name} itself, which streams need as RAPID has it")
             }
-            Reason::SharpCorner => {
-                f.write_str("it passes a point without a stop and without room for a zone")
-            }
-            Reason::Guided(saved) => write!(
-                f,
+            Reason::SharpCorner => "it passes a point without a stop and without room for a zone",
+            Reason::Guided(saved) => &format!(
                 "positions for externally guided motion beside the program would save {saved:.1} J"
             ),
-            Reason::NoMotion => f.write_str("the robot is there already"),
-            Reason::NoSaving => f.write_str("no energy is saved in the time that there is"),
-            Reason::TooShort(least) => write!(f, "it takes at least {least:.3} s"),
-            Reason::KeepOut => f.write_str(
-                "it keeps to its path, which comes into what the cell keeps free already",
-            ),
-            Reason::TooManyVariants(n) => write!(f, "it runs in {n} different ways"),
+            Reason::NoMotion => "the robot is there already",
+            Reason::NoSaving => "no energy is saved in the time that there is",
+            Reason::TooShort(least) => &format!("it takes at least {least:.3} s"),
+            Reason::KeepOut => {
+                "it keeps to its path, which comes into what the cell keeps free already"
+            }
+            Reason::TooManyVariants(n) => &format!("it runs in {n} different ways"),
             Reason::ShortDwell(break_even) if break_even.is_infinite() => {
-                f.write_str("nothing is to be held, or no brake is known")
+                "nothing is to be held, or no brake is known"
             }
-            Reason::ShortDwell(break_even) => {
-                write!(f, "the brake pays from {break_even:.1} s on")
+            Reason::ShortDwell(break_even) => &format!("the brake pays from {break_even:.1} s on"),
+            Reason::UnknownDwell => "how long it waits is not known (--input states it)",
+            Reason::NeedsSetting(break_even) => {
+                &format!("the brake pays from {break_even:.1} s on, by a setting of the controller")
             }
-            Reason::UnknownDwell => {
-                f.write_str("how long it waits is not known (--input states it)")
-            }
-            Reason::NeedsSetting(break_even) => write!(
-                f,
-                "the brake pays from {break_even:.1} s on, by a setting of the controller"
-            ),
-        }
+        };
+        write!(f, "{}: {words}", self.code())
     }
 }

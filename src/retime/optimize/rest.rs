@@ -60,7 +60,7 @@ const MOVING: f64 = 0.8;
 /// Least saving, as a share of the holding energy.
 const WORTHWHILE: f64 = 0.05;
 /// Smallest joint displacement that is worth a stream, rad.
-const LEAST_WAY: f64 = 0.02;
+const LEAST_DISPLACEMENT: f64 = 0.02;
 
 /// The rest of least energy at a pose within `distance` (rad) in each joint, with streams of at
 /// least `spacing` (s) between points. `None` if it saves too little.
@@ -69,7 +69,7 @@ pub fn rest(standstill: &Standstill<'_>, distance: f64, spacing: f64) -> Option<
     let standing = standing(model, None, load, q, distance);
     let worth = (1.0 - WORTHWHILE) * standing.holding_w() * duration;
     let farthest = (0..DOF).map(|j| (standing.best[j] - q[j]).abs()).fold(0.0, f64::max);
-    if farthest < LEAST_WAY || standing.best_w * duration >= worth {
+    if farthest < LEAST_DISPLACEMENT || standing.best_w * duration >= worth {
         return None;
     }
     let base = account::base(model, *duration).energy_j();
@@ -85,8 +85,8 @@ pub fn rest(standstill: &Standstill<'_>, distance: f64, spacing: f64) -> Option<
                     break;
                 }
                 Ok(found) => best = Some(found),
-                Err(Obstructed::Anyway) => break,
-                Err(Obstructed::Quick) => {}
+                Err(Refused::AtEverySpeed) => break,
+                Err(Refused::TooFast) => {}
             }
             time *= SLOWER;
         }
@@ -96,11 +96,11 @@ pub fn rest(standstill: &Standstill<'_>, distance: f64, spacing: f64) -> Option<
 }
 
 /// Reason why a motion is not possible.
-enum Obstructed {
+enum Refused {
     /// It is too fast.
-    Quick,
+    TooFast,
     /// At every speed.
-    Anyway,
+    AtEverySpeed,
 }
 
 /// Both motions in `time` (s) each, if they keep the limits.
@@ -109,17 +109,17 @@ fn trip(
     low: &Joints,
     time: f64,
     spacing: f64,
-) -> Result<Rest, Obstructed> {
+) -> Result<Rest, Refused> {
     let Standstill { model, load, tool, q, duration, loads, body } = standstill;
-    let out = way(q, low, time, spacing).ok_or(Obstructed::Anyway)?;
-    let back = way(out.end(), q, time, spacing).ok_or(Obstructed::Anyway)?;
+    let out = straight(q, low, time, spacing).ok_or(Refused::AtEverySpeed)?;
+    let back = straight(out.end(), q, time, spacing).ok_or(Refused::AtEverySpeed)?;
     let checked = |stream: &Stream| check(model, load, tool, stream, Room::Free(loads), *body);
     let check = checked(&out).max(&checked(&back));
     if check.intrusion_m > 0.0 || !check.in_range {
-        return Err(Obstructed::Anyway);
+        return Err(Refused::AtEverySpeed);
     }
     if !check.holds() {
-        return Err(Obstructed::Quick);
+        return Err(Refused::TooFast);
     }
     let moving = |stream: &Stream| {
         let time = stream.duration();
@@ -133,7 +133,7 @@ fn trip(
 }
 
 /// A stream along the straight joint-space line between two poses with smooth start and end.
-fn way(from: &Joints, to: &Joints, time: f64, spacing: f64) -> Option<Stream> {
+fn straight(from: &Joints, to: &Joints, time: f64, spacing: f64) -> Option<Stream> {
     let n = ((time / spacing).floor() as usize).clamp(POINTS.0, POINTS.1);
     let eased = |x: f64| x * x * x * (10.0 - x * (15.0 - 6.0 * x));
     let point = |i: usize| {

@@ -3,13 +3,13 @@
 //! The convex program on the path gives a reference motion. A stream is fitted to it and its
 //! realised motion is checked. If a limit is exceeded, the next attempt has tighter margins.
 
-use super::attempt::{Attempt, Intended};
+use super::attempt::{Attempt, Fit};
 use super::energy_program::{EnergyBound, energy_bound, minimize_energy};
 use super::keep_out;
 use super::margins::{FIRST_DISTANCE, Margins};
 use super::reason::Reason;
 pub use super::run_problem::Task;
-use super::run_problem::{RunProblem, fastest_profile};
+use super::run_problem::{INTERVALS, RunProblem, fastest_profile};
 use super::stream_rounding::{quantum, round_down, round_up, rounded_intervals};
 use crate::arm::dynamics::potential_energy;
 use crate::retime::energy::power::motion_energy;
@@ -89,23 +89,20 @@ pub fn retime(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
         let path = PathUse::KeptFor(Reason::KeepOut);
         return kept.map(|kept| Retiming { path, ..kept });
     }
-    let free = on_path(task, goal).map(|free| Retiming { path: PathUse::Left, ..free });
+    let free = on_path(task, goal).map(|free| {
+        let bound = free_bound(task, free.duration_s - task.run.settling);
+        let idle = free.energy.energy_j() - free.energy.motion_energy_j();
+        Retiming { path: PathUse::Left, lower_bound_j: bound + idle, ..free }
+    });
     match (kept, free) {
         (Ok(kept), Ok(free)) => {
-            let bound = free_bound(task, free.duration_s - task.run.settling);
-            let idle = free.energy.energy_j() - free.energy.motion_energy_j();
             let better = match goal {
                 Goal::Fastest => free.duration_s < kept.duration_s,
                 _ => free.energy.energy_j() < kept.energy.energy_j(),
             };
-            Ok(if better { Retiming { lower_bound_j: bound + idle, ..free } } else { kept })
+            Ok(if better { free } else { kept })
         }
-        (Ok(only), Err(_)) => Ok(only),
-        (Err(_), Ok(free)) => {
-            let bound = free_bound(task, free.duration_s - task.run.settling);
-            let idle = free.energy.energy_j() - free.energy.motion_energy_j();
-            Ok(Retiming { lower_bound_j: bound + idle, ..free })
-        }
+        (Ok(only), Err(_)) | (Err(_), Ok(only)) => Ok(only),
         (Err(reason), Err(_)) => Err(reason),
     }
 }
@@ -131,14 +128,14 @@ fn on_path(task: &Task<'_>, goal: Goal) -> Result<Retiming, Reason> {
             let worth = before - WORTHWHILE * before.abs();
             let retiming = problem
                 .least_energy(time, worth)
-                .or_else(|reason| problem.instead(reason, time))?;
+                .or_else(|reason| problem.or_fastest_slowed(reason, time))?;
             let saves = retiming.energy.energy_j() < task.energy_before.energy_j();
             if saves { Ok(retiming) } else { Err(Reason::NoSaving) }
         }
         Goal::Exactly(time) => {
             problem.least_energy(time, f64::INFINITY).or_else(|reason| match reason {
-                Reason::NoSaving => problem.within(time),
-                reason => problem.instead(reason, time),
+                Reason::NoSaving => problem.fastest_slowed(time),
+                reason => problem.or_fastest_slowed(reason, time),
             })
         }
         Goal::Fastest => problem.least_time(),
@@ -160,19 +157,19 @@ impl RunProblem<'_> {
         let bound = self.bound(budget);
         let mut margins = Margins::first(self.tolerance());
         let mut problem = None;
-        let mut begun: Option<Intended> = None;
+        let mut begun: Option<Fit> = None;
         let mut worst = NEARLY;
         let mut is_tight = false;
         for _ in 0..ATTEMPTS {
-            let intended = begun.take().map_or_else(
+            let fit = begun.take().map_or_else(
                 || {
                     let program = self.least_energy_program(budget, &margins, bound.as_ref());
                     is_tight |= matches!(program, Err(Reason::NoSaving));
-                    program.or_else(|reason| self.as_before(reason, budget, &margins))
+                    program.or_else(|reason| self.fit_original(reason, budget, &margins))
                 },
                 Ok,
             );
-            let outcome = intended.and_then(|intended| self.realise(intended, &margins));
+            let outcome = fit.and_then(|fit| self.realise(fit, &margins));
             match outcome {
                 Ok(attempt) if attempt.check.holds() => {
                     let bound = bound.map(|bound| bound.lower_bound);
@@ -193,7 +190,7 @@ impl RunProblem<'_> {
                         let is_new = margins.edges.is_infinite() && attempt.check.polygon > 1.0;
                         worst = if is_new { f64::INFINITY } else { share };
                         margins.tighten_a_little(&attempt.check);
-                        begun = Some(attempt.intended);
+                        begun = Some(attempt.fit);
                     } else {
                         worst = NEARLY;
                         margins.tighten(&attempt.check);
@@ -215,12 +212,12 @@ impl RunProblem<'_> {
         budget: f64,
         margins: &Margins,
         bound: Option<&EnergyBound>,
-    ) -> Result<Intended, Reason> {
-        let (mut grid, limits) = self.grid(margins)?;
+    ) -> Result<Fit, Reason> {
+        let (mut grid, limits) = self.grid(margins, INTERVALS)?;
         let mut fast = fastest_profile(&grid, &limits)?;
         if fast.duration() > budget {
             // The grid without shaping permits a shorter time; polishing has to shape the motion.
-            (grid, _) = self.bare_grid(margins)?;
+            (grid, _) = self.bare_grid(margins, INTERVALS)?;
             fast = fastest_profile(&grid, &limits)?;
         }
         // The relaxation bounds the electrical energy only.
@@ -228,12 +225,12 @@ impl RunProblem<'_> {
         let optimum = minimize_energy(&grid, &limits, &self.model, &fast, budget, bound)
             .into_optimum()
             .ok_or(Reason::NoSaving)?;
-        self.intend(&optimum.profile, budget, margins)
+        self.fit_profile(&optimum.profile, budget, margins)
     }
 
     /// Lower bound of the motion energy on the path in this time at the full limits.
     fn bound(&self, budget: f64) -> Option<EnergyBound> {
-        let (grid, limits) = self.bare_grid(&Margins::none()).ok()?;
+        let (grid, limits) = self.bare_grid(&Margins::none(), INTERVALS).ok()?;
         let fast = fastest_profile(&grid, &limits).ok()?;
         energy_bound(&grid, &limits, &self.electrical, &fast, budget)
     }
@@ -244,14 +241,14 @@ impl RunProblem<'_> {
         let ramp = self.task.model.controller.ramp_s.unwrap_or(0.1);
         let mut problem = None;
         for _ in 0..ATTEMPTS {
-            let (grid, limits) = self.grid(&margins)?;
+            let (grid, limits) = self.grid(&margins, INTERVALS)?;
             let fast = fastest_profile(&grid, &limits)?;
             let mut best: Option<Attempt> = None;
             let step = ramp.max(SLOW_STEP * fast.duration());
             for share in RAMP_SHARES {
                 let budget = round_up(fast.duration() + share * step);
-                let intended = self.intend(&fast, budget, &margins);
-                match intended.and_then(|intended| self.realise(intended, &margins)) {
+                let fit = self.fit_profile(&fast, budget, &margins);
+                match fit.and_then(|fit| self.realise(fit, &margins)) {
                     Ok(attempt) if attempt.check.holds() => {
                         return Ok(self.retiming(attempt.stream, None));
                     }
@@ -271,7 +268,7 @@ impl RunProblem<'_> {
     }
 
     /// The fastest stream, slowed to the given time.
-    fn within(&self, time: f64) -> Result<Retiming, Reason> {
+    fn fastest_slowed(&self, time: f64) -> Result<Retiming, Reason> {
         let retiming = self.least_time()?;
         if retiming.duration_s > time + quantum() {
             return Err(Reason::TooShort(retiming.duration_s));
@@ -282,9 +279,9 @@ impl RunProblem<'_> {
     }
 
     /// The same after failed attempts at a stream; other reasons are returned.
-    fn instead(&self, reason: Reason, time: f64) -> Result<Retiming, Reason> {
+    fn or_fastest_slowed(&self, reason: Reason, time: f64) -> Result<Retiming, Reason> {
         match reason {
-            Reason::NoStream(_) => self.within(time).or(Err(reason)),
+            Reason::NoStream(_) => self.fastest_slowed(time).or(Err(reason)),
             other => Err(other),
         }
     }

@@ -26,8 +26,8 @@ use crate::retime::motion::timing::reachability::time_optimal;
 use crate::retime::path::LegKind;
 use crate::retime::path::joint_path::{JointPath, Joints};
 
-/// Grid intervals in addition to those of zones.
-const INTERVALS: usize = 44;
+/// Usual number of grid intervals in addition to those of zones.
+pub(super) const INTERVALS: usize = 44;
 /// Time by which the points of a stream smooth its speed to each side, s.
 const SHAPING_TIME: f64 = 0.04;
 /// Distance from the path with a noticeable cost in polishing, as a share of the tolerance.
@@ -91,7 +91,7 @@ impl<'a> RunProblem<'a> {
     }
 
     /// Distance from the path without a noticeable cost in polishing, m.
-    pub(super) fn looseness(&self) -> f64 {
+    pub(super) fn free_distance(&self) -> f64 {
         let moves = self.task.run.moves.iter();
         let free = moves
             .map(|record| self.task.freedom.free_deviation(&record.movement))
@@ -107,25 +107,17 @@ impl<'a> RunProblem<'a> {
     }
 
     /// The timing problem on the path, smoothed so that a stream can follow its solution.
-    pub(super) fn grid(&self, margins: &Margins) -> Result<(PathGrid, PathLimits), Reason> {
-        self.grid_of(margins, INTERVALS)
-    }
-
-    /// The same with this number of intervals in addition to those of zones.
-    pub(super) fn grid_of(
+    pub(super) fn grid(
         &self,
         margins: &Margins,
         intervals: usize,
     ) -> Result<(PathGrid, PathLimits), Reason> {
-        let (grid, limits) = self.bare_grid_of(margins, intervals)?;
+        let (grid, limits) = self.bare_grid(margins, intervals)?;
         Ok((grid.holding(SHAPING_TIME, margins.reach), limits))
     }
 
-    pub(super) fn bare_grid(&self, margins: &Margins) -> Result<(PathGrid, PathLimits), Reason> {
-        self.bare_grid_of(margins, INTERVALS)
-    }
-
-    fn bare_grid_of(
+    /// The timing problem on the path.
+    pub(super) fn bare_grid(
         &self,
         margins: &Margins,
         intervals: usize,

@@ -60,9 +60,9 @@ pub fn sites(program: &Program, simulation: &Simulation) -> Vec<Site> {
         let reason = eligibility(run, std::mem::take(&mut first))
             .err()
             .or_else(|| places.neighbours(run).err())
-            .or_else(|| sets_on_the_way(simulation, index).then_some(Reason::EarlyOutput))
+            .or_else(|| sets_output_in_motion(simulation, index).then_some(Reason::EarlyOutput))
             .or_else(|| joined.contains(&index).then_some(Reason::FliesOn))
-            .or_else(|| places.flies_on(run).then_some(Reason::FliesOn));
+            .or_else(|| places.ends_in_fly_by(run).then_some(Reason::FliesOn));
         let same_file = head.file == tail.file;
         let span = if same_file { head.to(tail) } else { head };
         let site = sites.entry((head, tail)).or_insert_with(|| Site {
@@ -100,7 +100,7 @@ pub fn sites(program: &Program, simulation: &Simulation) -> Vec<Site> {
 }
 
 /// Whether an output is set during the movements of a run.
-fn sets_on_the_way(simulation: &Simulation, run: usize) -> bool {
+fn sets_output_in_motion(simulation: &Simulation, run: usize) -> bool {
     let before = simulation.events[..run].iter().rev();
     before
         .map_while(|event| match &event.what {
@@ -256,35 +256,23 @@ pub fn not_constant(movement: &Movement) -> Option<Reason> {
 }
 
 fn settings_allow(settings: &Settings) -> Result<(), Reason> {
-    let setting = |name: &str| Err(Reason::Setting(name.to_owned()));
-    if settings.speed_override != 1.0 {
-        return setting("VelSet");
-    }
-    if settings.acceleration != 1.0 || settings.ramp != 1.0 {
-        return setting("AccSet");
-    }
-    if settings.fine_point_ramp != 1.0 {
-        return setting("AccSet\\FinePointRamp");
-    }
-    if settings.refresh != 1.0 {
-        return setting("SpeedRefresh");
-    }
-    if settings.path_acceleration.iter().any(|limit| limit.is_finite()) {
-        return setting("PathAccLim");
-    }
-    if settings.world_acceleration.is_finite() {
-        return setting("WorldAccLim");
-    }
-    if settings.displacement.is_some() {
-        return setting("PDispSet");
-    }
-    match settings.other.first() {
-        Some(name) => setting(name),
-        None => Ok(()),
-    }
+    let limits_path = settings.path_acceleration.iter().any(|limit| limit.is_finite());
+    let in_force = [
+        (settings.speed_override != 1.0, "VelSet"),
+        (settings.acceleration != 1.0 || settings.ramp != 1.0, "AccSet"),
+        (settings.fine_point_ramp != 1.0, "AccSet\\FinePointRamp"),
+        (settings.refresh != 1.0, "SpeedRefresh"),
+        (limits_path, "PathAccLim"),
+        (settings.world_acceleration.is_finite(), "WorldAccLim"),
+        (settings.displacement.is_some(), "PDispSet"),
+    ];
+    let first = in_force.into_iter().find(|(is_set, _)| *is_set).map(|(_, name)| name.to_owned());
+    let setting = first.or_else(|| settings.other.first().map(ToString::to_string));
+    setting.map_or(Ok(()), |name| Err(Reason::Setting(name)))
 }
 
 /// Statement list and index of each statement.
+#[derive(Default)]
 struct Places {
     by_span: BTreeMap<Span, (usize, usize)>,
     /// Statements that wait for a time, at which the robot stops.
@@ -295,8 +283,7 @@ struct Places {
 
 impl Places {
     fn new(program: &Program) -> Places {
-        let mut places =
-            Places { by_span: BTreeMap::new(), stops: BTreeSet::new(), compact: BTreeSet::new() };
+        let mut places = Places::default();
         let mut lists = 0;
         for module in &program.modules {
             for routine in &module.routines {
@@ -330,7 +317,7 @@ impl Places {
 
     /// Whether a run ends in a fly-by point without a timed wait after it. A wait for an input that
     /// is already set, or another branch, does not stop the robot.
-    fn flies_on(&self, run: &Run) -> bool {
+    fn ends_in_fly_by(&self, run: &Run) -> bool {
         let Some(last) = run.moves.last().filter(|record| !record.movement.zone.fine) else {
             return false;
         };

@@ -131,7 +131,7 @@ impl Search<'_> {
     fn inside(&self, mut at: Joints) -> Joints {
         for joint in 0..DOF {
             let [low, high] = self.model.limits.position_at(&at, joint);
-            let [least, most] = [-1.0, 1.0].map(|sense| self.from[joint] + sense * self.distance);
+            let [least, most] = [-1.0, 1.0].map(|sign| self.from[joint] + sign * self.distance);
             at[joint] = at[joint].max(low.max(least)).min(high.min(most));
         }
         at
@@ -170,9 +170,9 @@ impl Search<'_> {
     fn explored(&self, from: (Joints, f64), step: f64) -> (Joints, f64) {
         let mut best = from;
         for joint in 0..DOF {
-            for sense in [-step, step] {
+            for change in [-step, step] {
                 let mut at = best.0;
-                at[joint] += sense;
+                at[joint] += change;
                 self.consider(at, &mut best);
             }
         }

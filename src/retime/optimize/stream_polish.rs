@@ -67,39 +67,13 @@ pub fn polish_stream(
     let rows = problem.points.limit_rows(limits);
     let polish = Polish { problem, limits, rows };
     let mut best = polish.candidate(stream.clone());
-    let mut damping = DAMPING;
-    let mut status = PolishStatus::Stopped;
-    if polish.problem.points.size() == 0 {
-        return Ok(polish.polished(best, PolishStatus::Converged));
-    }
-    let mut model = polish.quadratic(&best);
-    for _ in 0..MAX_STEPS {
-        let Some(step) = polish.step(&best, &model, damping) else {
-            status = PolishStatus::Converged;
-            break;
-        };
-        let Some((part, next)) = polish.along(&best, &step)? else {
-            if damping < DAMPING_RANGE.1 && step.predicted > CONVERGED {
-                damping *= DAMPING_STEP.powi(2);
-                continue;
-            }
-            status = PolishStatus::Converged;
-            break;
-        };
-        let fall = best.merit - next.merit;
-        if part < 1.0 {
-            damping *= DAMPING_STEP;
-        } else if fall > 0.5 * step.predicted {
-            damping = (damping / DAMPING_STEP).max(DAMPING_RANGE.0);
-        }
-        best = next;
-        if fall < CONVERGED {
-            status = PolishStatus::Converged;
-            break;
-        }
-        model = polish.quadratic(&best);
-    }
-    Ok(polish.polished(best, status))
+    let status = polish.improve(&mut best)?;
+    Ok(Polished {
+        status,
+        realised: best.realised,
+        deviation: polish.problem.deviation(&best.stream),
+        stream: best.stream,
+    })
 }
 
 /// A stream with its merit in units of the initial energy.
@@ -123,13 +97,37 @@ struct Polish<'a, P> {
 }
 
 impl<P: Plant> Polish<'_, P> {
-    fn polished(&self, best: Candidate, status: PolishStatus) -> Polished {
-        Polished {
-            status,
-            realised: best.realised,
-            deviation: self.problem.deviation(&best.stream),
-            stream: best.stream,
+    /// Steps of the quadratic programs from `best` on, which becomes the best stream found.
+    fn improve(&self, best: &mut Candidate) -> Result<PolishStatus, StreamError> {
+        if self.problem.points.size() == 0 {
+            return Ok(PolishStatus::Converged);
         }
+        let mut damping = DAMPING;
+        let mut model = self.quadratic(best);
+        for _ in 0..MAX_STEPS {
+            let Some(step) = self.step(best, &model, damping) else {
+                return Ok(PolishStatus::Converged);
+            };
+            let Some((part, next)) = self.along(best, &step)? else {
+                if damping < DAMPING_RANGE.1 && step.predicted > CONVERGED {
+                    damping *= DAMPING_STEP.powi(2);
+                    continue;
+                }
+                return Ok(PolishStatus::Converged);
+            };
+            let fall = best.merit - next.merit;
+            if part < 1.0 {
+                damping *= DAMPING_STEP;
+            } else if fall > 0.5 * step.predicted {
+                damping = (damping / DAMPING_STEP).max(DAMPING_RANGE.0);
+            }
+            *best = next;
+            if fall < CONVERGED {
+                return Ok(PolishStatus::Converged);
+            }
+            model = self.quadratic(best);
+        }
+        Ok(PolishStatus::Stopped)
     }
 
     fn candidate(&self, stream: Stream) -> Candidate {

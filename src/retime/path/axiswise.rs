@@ -30,9 +30,8 @@ pub(super) struct Wrist {
 impl Wrist {
     /// From the wrist angles of `start` to those of `end` over `length`.
     pub(super) fn new(start: &Joints, end: &Joints, length: f64) -> Wrist {
-        let start3 = [start[3], start[4], start[5]];
         Wrist {
-            start: start3,
+            start: [start[3], start[4], start[5]],
             rate: std::array::from_fn(|j| (end[ARM + j] - start[ARM + j]) / length),
         }
     }
@@ -62,7 +61,7 @@ impl Wrist {
             }
         }
         let error = position - tool.pose(&fk(model, &q)).translation.vector;
-        (error.norm() < NEAR_ENOUGH).then_some(q)
+        (error.norm() < ACCEPTED).then_some(q)
     }
 
     /// Joint angles and derivatives at a curve point with the solution `q` of [`Wrist::solve`];
@@ -87,7 +86,7 @@ impl Wrist {
 }
 
 /// Largest accepted error after the last Newton step, m.
-const NEAR_ENOUGH: f64 = 1e-9;
+const ACCEPTED: f64 = 1e-9;
 
 /// The part of a Jacobian that maps the arm joints to the TCP velocity.
 fn arm(jacobian: &nalgebra::Matrix6<f64>) -> Matrix3<f64> {

@@ -175,8 +175,8 @@ fn assemble(model: &Model, legs: &[Measured<'_>]) -> Result<JointPath, PathError
     for (i, leg) in legs.iter().enumerate() {
         let next = legs.get(i + 1);
         let zone = next.map_or(0.0, |next| zone_size(leg, next));
-        let arrival = builder.follow(leg, &corner, trimmed, leg.extent - zone)?;
-        if let Some(joint) = first_difference(&arrival.end, &leg.leg.end) {
+        let reached = builder.follow(leg, &corner, trimmed, leg.extent - zone)?;
+        if let Some(joint) = first_difference(&reached, &leg.leg.end) {
             return Err(PathError::Configuration { leg: leg.index, joint });
         }
         if let Some(next) = next {
@@ -212,20 +212,15 @@ struct Builder<'a> {
     q: Joints,
 }
 
-struct Arrival {
-    /// Joint angles at the programmed end of the leg, reached along it.
-    end: Joints,
-}
-
 impl Builder<'_> {
-    /// The part [from, to] of a leg.
+    /// The part [from, to] of a leg; returns the joint angles at its programmed end, reached along it.
     fn follow(
         &mut self,
         leg: &Measured<'_>,
         start: &Joints,
         from: f64,
         to: f64,
-    ) -> Result<Arrival, PathError> {
+    ) -> Result<Joints, PathError> {
         match &leg.curve {
             None => {
                 let end = leg.leg.end;
@@ -238,7 +233,7 @@ impl Builder<'_> {
                 for share in [0.25, 0.5, 0.75, 1.0] {
                     self.check_limits(leg, &along(start, &end, share), share)?;
                 }
-                Ok(Arrival { end })
+                Ok(end)
             }
             Some(curve) => {
                 if to - from > NO_MOTION {
@@ -252,7 +247,7 @@ impl Builder<'_> {
                     let x = to + rest * i as f64 / steps as f64;
                     q = self.solve(leg, &curve.eval(x), &q, x)?;
                 }
-                Ok(Arrival { end: q })
+                Ok(q)
             }
         }
     }
@@ -273,7 +268,12 @@ impl Builder<'_> {
                     && after.wrist.is_none() =>
             {
                 let curve = cartesian_corner(before, after, size);
-                self.trace_zone(before, after, &curve, size)
+                for pair in blend::KINKS.windows(2) {
+                    let leg = if pair[1] <= 0.0 { before } else { after };
+                    let (from, to) = (size * (1.0 + pair[0]), size * (1.0 + pair[1]));
+                    self.trace(leg, &curve, PieceKind::CartesianZone, from, to)?;
+                }
+                Ok(())
             }
             (None, None) => {
                 let rate = |leg: &Measured<'_>, a: &Joints| -> Joints {
@@ -300,13 +300,9 @@ impl Builder<'_> {
                 self.check_limits(before, &at(0.0).q, 1.0)
             }
             _ => {
-                let a = self.leg_point(before, start, before.extent - size)?;
-                self.q = a.q;
-                let b = {
-                    // The inverse solution after the corner is continued from the corner.
-                    self.q = *corner;
-                    self.leg_point(after, corner, size)?
-                };
+                let a = self.leg_point(before, start, before.extent - size, &self.q)?;
+                // The inverse solution after the corner is continued from the corner.
+                let b = self.leg_point(after, corner, size, corner)?;
                 let whole = Piece::hermite((0.0, 2.0 * size), 0, PieceKind::JointZone, &a, &b);
                 let middle = whole.eval(size);
                 self.check_limits(before, &middle.q, 1.0)?;
@@ -316,21 +312,6 @@ impl Builder<'_> {
                 Ok(())
             }
         }
-    }
-
-    fn trace_zone(
-        &mut self,
-        before: &Measured<'_>,
-        after: &Measured<'_>,
-        curve: &Curve,
-        size: f64,
-    ) -> Result<(), PathError> {
-        for pair in blend::KINKS.windows(2) {
-            let leg = if pair[1] <= 0.0 { before } else { after };
-            let (from, to) = (size * (1.0 + pair[0]), size * (1.0 + pair[1]));
-            self.trace(leg, curve, PieceKind::CartesianZone, from, to)?;
-        }
-        Ok(())
     }
 
     /// Pieces along a TCP curve, each within the tolerance.
@@ -358,7 +339,7 @@ impl Builder<'_> {
                 continue;
             }
             if error > PIECE_TOLERANCE {
-                return Err(PathError::Singular { leg: leg.index, percent: percent(leg, x) });
+                return Err(singular(leg, x));
             }
             self.push(leg.index, kind, h, &a, &b);
             a = b;
@@ -379,7 +360,7 @@ impl Builder<'_> {
     ) -> Result<PathPoint, PathError> {
         let at = curve.eval(x);
         let q = self.solve(leg, &at, near, x)?;
-        let singular = || PathError::Singular { leg: leg.index, percent: percent(leg, x) };
+        let singular = || singular(leg, x);
         if let Some(wrist) = &leg.wrist {
             let point = wrist.derivatives(self.model, &leg.leg.tool, &at, q);
             return point
@@ -414,9 +395,8 @@ impl Builder<'_> {
         let q = match &leg.wrist {
             Some(wrist) => {
                 let position = at.pose.translation.vector;
-                wrist.solve(self.model, tool, &position, x, near).ok_or_else(|| {
-                    PathError::Singular { leg: leg.index, percent: percent(leg, x) }
-                })?
+                let solution = wrist.solve(self.model, tool, &position, x, near);
+                solution.ok_or_else(|| singular(leg, x))?
             }
             None => ik_near(self.model, &tool.flange(&at.pose), near).map_err(|why| {
                 let percent = percent(leg, x);
@@ -424,21 +404,23 @@ impl Builder<'_> {
             })?,
         };
         if (0..DOF).any(|j| (q[j] - near[j]).abs() > JUMP) {
-            return Err(PathError::Singular { leg: leg.index, percent: percent(leg, x) });
+            return Err(singular(leg, x));
         }
         self.check_limits(leg, &q, x / leg.extent)?;
         Ok(q)
     }
 
+    /// The point at x of a leg, on the inverse solution next to `near`.
     fn leg_point(
         &self,
         leg: &Measured<'_>,
         start: &Joints,
         x: f64,
+        near: &Joints,
     ) -> Result<PathPoint, PathError> {
         match &leg.curve {
             None => Ok(joint_point(leg, start, x)),
-            Some(curve) => self.curve_point(leg, curve, x, &self.q),
+            Some(curve) => self.curve_point(leg, curve, x, near),
         }
     }
 
@@ -458,6 +440,10 @@ impl Builder<'_> {
 
 fn percent(leg: &Measured<'_>, x: f64) -> f64 {
     (100.0 * x / leg.extent).clamp(0.0, 100.0)
+}
+
+fn singular(leg: &Measured<'_>, x: f64) -> PathError {
+    PathError::Singular { leg: leg.index, percent: percent(leg, x) }
 }
 
 fn joint_point(leg: &Measured<'_>, start: &Joints, x: f64) -> PathPoint {

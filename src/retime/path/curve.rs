@@ -110,7 +110,8 @@ impl Curve {
                 let angular_rate = (corner_angular(turns, *half, z + ANGULAR_STEP)
                     - corner_angular(turns, *half, z - ANGULAR_STEP))
                     / (2.0 * ANGULAR_STEP * half);
-                let rotation = corner.rotation * corner_rotation(turns, *half, z);
+                let turned = UnitQuaternion::from_scaled_axis(corner_vector(turns, *half, z));
+                let rotation = corner.rotation * turned;
                 CurvePoint {
                     pose: Isometry3::from_parts(Translation3::from(position), rotation),
                     linear: d1 + (d2 - d1) * weight,
@@ -127,10 +128,6 @@ impl Curve {
 fn corner_vector(turns: &[Vector3<f64>; 2], half: f64, z: f64) -> Vector3<f64> {
     let [integral, _, _] = blend::turn(z);
     turns[0] * (half * z) + (turns[1] - turns[0]) * (half * integral)
-}
-
-fn corner_rotation(turns: &[Vector3<f64>; 2], half: f64, z: f64) -> UnitQuaternion<f64> {
-    UnitQuaternion::from_scaled_axis(corner_vector(turns, half, z))
 }
 
 /// Angular velocity per parameter in the corner frame: left Jacobian of SO(3) at φ times dφ/dx.

@@ -10,9 +10,10 @@ pub const DOF: usize = 6;
 /// One number per joint.
 pub type Joints = [f64; DOF];
 
-/// Coefficients, lowest first, of the quintic with this value, first and second derivative at 0 and
-/// at 1.
-pub fn quintic([p0, v0, a0]: [f64; 3], [p1, v1, a1]: [f64; 3]) -> [f64; 6] {
+/// Coefficients by x/h, lowest first, of the quintic with these values, first and second derivatives
+/// by x at 0 and at h.
+pub fn quintic(h: f64, from: [f64; 3], to: [f64; 3]) -> [f64; 6] {
+    let [[p0, v0, a0], [p1, v1, a1]] = [from, to].map(|[p, v, a]| [p, v * h, a * h * h]);
     let d = p1 - p0;
     [
         p0,
@@ -35,6 +36,13 @@ pub enum PieceKind {
     CartesianZone,
     /// In a corner zone that a joint leg touches.
     JointZone,
+}
+
+impl PieceKind {
+    /// Whether the piece is in a corner zone.
+    pub fn is_zone(self) -> bool {
+        matches!(self, PieceKind::CartesianZone | PieceKind::JointZone)
+    }
 }
 
 /// A stretch [s, s + length] of a joint path.
@@ -72,50 +80,37 @@ impl Piece {
         a: &PathPoint,
         b: &PathPoint,
     ) -> Piece {
-        let h = length;
-        let mut coefficients = [[0.0; 6]; DOF];
-        for j in 0..DOF {
-            let (p0, v0, a0) = (a.q[j], a.q1[j] * h, a.q2[j] * h * h);
-            let (p1, v1, a1) = (b.q[j], b.q1[j] * h, b.q2[j] * h * h);
-            coefficients[j] = quintic([p0, v0, a0], [p1, v1, a1]);
-        }
+        let at = |point: &PathPoint, j: usize| [point.q[j], point.q1[j], point.q2[j]];
+        let coefficients = std::array::from_fn(|j| quintic(length, at(a, j), at(b, j)));
         Piece { s, length, leg, kind, coefficients }
     }
 
     /// q at s within the piece.
     pub fn position(&self, s: f64) -> Joints {
         let u = (s - self.s) / self.length;
-        let mut q = [0.0; DOF];
-        for (q, [c0, c1, c2, c3, c4, c5]) in q.iter_mut().zip(&self.coefficients) {
-            *q = c0 + u * (c1 + u * (c2 + u * (c3 + u * (c4 + u * c5))));
-        }
-        q
+        std::array::from_fn(|j| {
+            let [c0, c1, c2, c3, c4, c5] = self.coefficients[j];
+            c0 + u * (c1 + u * (c2 + u * (c3 + u * (c4 + u * c5))))
+        })
     }
 
     /// dq/ds at s within the piece.
     pub fn rates(&self, s: f64) -> Joints {
         let u = (s - self.s) / self.length;
-        let mut q1 = [0.0; DOF];
-        for (q1, [_, c1, c2, c3, c4, c5]) in q1.iter_mut().zip(&self.coefficients) {
-            let rest = 3.0 * c3 + u * (4.0 * c4 + u * 5.0 * c5);
-            *q1 = (c1 + u * (2.0 * c2 + u * rest)) / self.length;
-        }
-        q1
+        std::array::from_fn(|j| {
+            let [_, c1, c2, c3, c4, c5] = self.coefficients[j];
+            (c1 + u * (2.0 * c2 + u * (3.0 * c3 + u * (4.0 * c4 + u * 5.0 * c5)))) / self.length
+        })
     }
 
     /// Values at s within the piece.
     pub fn eval(&self, s: f64) -> PathPoint {
         let h = self.length;
         let u = (s - self.s) / h;
-        let mut point = PathPoint { q: [0.0; DOF], q1: [0.0; DOF], q2: [0.0; DOF] };
-        for j in 0..DOF {
-            let [c0, c1, c2, c3, c4, c5] = self.coefficients[j];
-            point.q[j] = c0 + u * (c1 + u * (c2 + u * (c3 + u * (c4 + u * c5))));
-            point.q1[j] =
-                (c1 + u * (2.0 * c2 + u * (3.0 * c3 + u * (4.0 * c4 + u * 5.0 * c5)))) / h;
-            point.q2[j] = (2.0 * c2 + u * (6.0 * c3 + u * (12.0 * c4 + u * 20.0 * c5))) / (h * h);
-        }
-        point
+        let q2 = self.coefficients.map(|[_, _, c2, c3, c4, c5]| {
+            (2.0 * c2 + u * (6.0 * c3 + u * (12.0 * c4 + u * 20.0 * c5))) / (h * h)
+        });
+        PathPoint { q: self.position(s), q1: self.rates(s), q2 }
     }
 }
 

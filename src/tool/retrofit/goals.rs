@@ -10,7 +10,7 @@ use super::planning::Planning;
 use super::settings::{Budget, Objective};
 use super::simulated::TIME_TOLERANCE;
 use crate::retime::motion::timeline::{Event, WaitBasis, What};
-use crate::retime::optimize::cycle::{Cycle, TradeOff};
+use crate::retime::optimize::cycle::{Cycle, EnergyCurve};
 use crate::retime::optimize::energy_curve::Curve;
 use crate::retime::optimize::reason::Reason;
 use crate::retime::optimize::retime::{Goal, Retiming, SLOWEST, Task, fastest};
@@ -30,7 +30,7 @@ pub(super) struct Plan {
 
 /// A cycle whose time is distributed among its runs.
 struct SharedCycle {
-    curves: Vec<TradeOff>,
+    curves: Vec<EnergyCurve>,
     cycle: Cycle,
 }
 
@@ -89,11 +89,11 @@ fn shared_time(
     let mut refinements = 0;
     loop {
         let known = tasks.iter().zip(bounds).zip(&curves);
-        let known: Option<Vec<TradeOff>> = known
+        let known: Option<Vec<EnergyCurve>> = known
             .map(|(((_, task), (shortest, longest)), curve)| {
                 // A run without an energy curve keeps its time.
                 let kept = || vec![(task.run.duration().max(*shortest).min(*longest), 0.0)];
-                curve.as_ref().and_then(Curve::trade_off).or_else(|| TradeOff::new(kept()))
+                curve.as_ref().and_then(Curve::energy_curve).or_else(|| EnergyCurve::new(kept()))
             })
             .collect();
         let shared = SharedCycle { curves: known.unwrap_or_default(), cycle };
@@ -102,7 +102,7 @@ fn shared_time(
         let learnt = curves
             .par_iter_mut()
             .zip(&times)
-            .map(|(curve, time)| curve.as_mut().is_some_and(|curve| curve.learn(*time)));
+            .map(|(curve, time)| curve.as_mut().is_some_and(|curve| curve.add_point(*time)));
         if refinements > MAX_REFINEMENTS || learnt.filter(|learnt| *learnt).count() == 0 {
             let goals = times.into_iter().map(Goal::Exactly).collect();
             return Some(Plan { goals, shared: Some(shared) });
@@ -136,7 +136,7 @@ impl Plan {
         let mut is_late = vec![false; times.len()];
         for (task, time) in times.iter().enumerate() {
             if matches!(self.goals[task], Goal::Exactly(goal) if *time > goal + TIME_TOLERANCE)
-                && let Some(curve) = TradeOff::new(vec![(*time, 0.0)])
+                && let Some(curve) = EnergyCurve::new(vec![(*time, 0.0)])
             {
                 shared.curves[task] = curve;
                 is_late[task] = true;

@@ -44,7 +44,7 @@ pub(super) fn relocated_waits(job: &Job<'_>, candidates: &[Candidate]) -> Vec<Re
     let Job { original, model, settings, .. } = job;
     let simulation = &original.cycle.simulation;
     let Some(distance) = settings.dwell_pose else { return Vec::new() };
-    let loads = settings.freedom.loads(model).for_other_ways(model);
+    let loads = settings.freedom.loads(model).for_new_motions(model);
     let may_be_stream = |candidate: &&Candidate| {
         matches!(candidate.state, State::Done(_) | State::Refused(Reason::NoSaving))
     };
@@ -260,7 +260,7 @@ fn excess_time(
         let [(_, TimedMotion::Stream(stream))] = run.motions.as_slice() else { return false };
         let tool = &run.legs[0].tool;
         let body = around(model, tool, &settings.freedom);
-        let loads = settings.freedom.loads(model).for_other_ways(model);
+        let loads = settings.freedom.loads(model).for_new_motions(model);
         let room = Room::Free(&loads);
         let seen = check(model, &run.load, tool, stream, room, body.as_ref());
         seen.holds()

@@ -95,7 +95,7 @@ impl Default for Settings {
             budget: Budget::default(),
             spacing_s: SPACING_S,
             closest_s: CLOSEST_S,
-            freedom: Freedom::none(),
+            freedom: Freedom::default(),
             form: Form::default(),
             layout: Layout::default(),
             cost: Cost::default(),

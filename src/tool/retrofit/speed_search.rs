@@ -10,7 +10,7 @@ use super::simulated::{Simulated, TIME_TOLERANCE};
 use super::speed_slots::Slot;
 use crate::retime::energy::EnergyParts;
 use crate::retime::motion::simulate;
-use crate::retime::optimize::cycle::TradeOff;
+use crate::retime::optimize::cycle::EnergyCurve;
 
 /// Grid of factors on the programmed speeds.
 const FACTORS: [f64; 18] =
@@ -98,9 +98,11 @@ fn times(job: &Job<'_>, slots: &[Slot], known: &[Vec<(f64, f64, f64)>]) -> Optio
     };
     let runs: Vec<&[usize]> = slots.iter().map(|slot| slot.events.as_slice()).collect();
     let cycle = cycle(&job.original, job.aim(), settings, &runs, takt);
-    let curves: Option<Vec<TradeOff>> = known
+    let curves: Option<Vec<EnergyCurve>> = known
         .iter()
-        .map(|list| TradeOff::new(list.iter().map(|(_, time, energy)| (*time, *energy)).collect()))
+        .map(|list| {
+            EnergyCurve::new(list.iter().map(|(_, time, energy)| (*time, *energy)).collect())
+        })
         .collect();
     cycle.share(&curves?)
 }

@@ -9,7 +9,7 @@ use crate::arm::robot::model::Model;
 
 /// Homogeneous meshes have too much mass far out: for nine robot families with published masses the
 /// published moment about axis 2 is 0.93 of that of the meshes.
-const EVENLY_FILLED: f64 = 0.93;
+const MESH_MASS_SHARE: f64 = 0.93;
 /// Distance of a rated load from the flange \[m\].
 const LOAD_DISTANCE: f64 = 0.1;
 
@@ -18,15 +18,15 @@ pub(super) fn links(known: &Known, geometry: &Geometry, size: Size) -> (Vec<Link
     if known.links.is_empty() {
         let (shapes, foot) = skeleton::shapes(geometry, size);
         let source = "the axes, reach, payload and mass of the robot: a rule of 71 robots of ABB";
-        return (filled(&shapes, size.mass - foot), source.to_owned());
+        return (with_masses(&shapes, size.mass - foot), source.to_owned());
     }
     let foot = known.foot.unwrap_or_default();
     let whose = if known.sister { "meshes of a sister" } else { "meshes" };
-    let links = filled(&known.links, EVENLY_FILLED * (size.mass - foot));
+    let links = with_masses(&known.links, MESH_MASS_SHARE * (size.mass - foot));
     (links, format!("{whose}, evenly filled, and the mass of the robot"))
 }
 
-fn filled(shapes: &[Shape], moving: f64) -> Vec<Link> {
+fn with_masses(shapes: &[Shape], moving: f64) -> Vec<Link> {
     let body = |shape: &Shape| Link {
         mass: shape.share * moving,
         com: shape.com,

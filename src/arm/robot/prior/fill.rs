@@ -44,11 +44,6 @@ struct Filling {
     stated: Vec<Origin>,
 }
 
-/// Standard deviation of a number whose logarithm has the deviation `sd`.
-fn deviation(value: f64, sd: f64) -> f64 {
-    value.abs() * sd
-}
-
 impl Filling {
     fn has(&self, table: &str, key: &str) -> bool {
         self.stated.iter().any(|origin| origin.table == table && origin.key == key)
@@ -75,7 +70,7 @@ impl Filling {
             return None;
         }
         let all: Vec<Rough> = (0..self.model.dof).map(rough).collect();
-        let sd = all.iter().map(|rough| deviation(rough.value, rough.sd)).collect();
+        let sd = all.iter().map(Rough::deviation).collect();
         self.note(table, key, source, Some(sd));
         Some(all.into_iter().map(|rough| rough.value).collect())
     }
@@ -84,7 +79,7 @@ impl Filling {
         if self.has(table, key) {
             return None;
         }
-        self.note(table, key, source, Some(vec![deviation(rough.value, rough.sd)]));
+        self.note(table, key, source, Some(vec![rough.deviation()]));
         Some(rough.value)
     }
 
@@ -100,23 +95,19 @@ impl Filling {
             }
         }
         if known.balanced {
-            let stiffness = BALANCED * self.stretched_gravity() / std::f64::consts::FRAC_PI_2;
-            let mut list = vec![0.0; self.model.dof];
-            list[1] = stiffness;
+            // Gravity torque of the stretched arm with a level upper arm.
+            let gravity = GRAVITY * stretched_moment(&self.model);
+            let stiffness = BALANCED * gravity / std::f64::consts::FRAC_PI_2;
+            let stiffness = Given::one_joint(1, stiffness, self.model.dof);
             self.model.effects.push(EffectParameters {
                 id: "gravity_spring".into(),
-                values: vec![("stiffness".into(), Given::Joints(list))],
+                values: vec![("stiffness".into(), stiffness)],
                 place: "the estimate".into(),
             });
             let source =
                 "a balancer that carries 0.7 of the gravity torque of the level arm: a proposal";
             self.note("effects.gravity_spring", "stiffness", source, None);
         }
-    }
-
-    /// Gravity torque about axis 2 of the stretched arm with a level upper arm \[Nm\].
-    fn stretched_gravity(&self) -> f64 {
-        GRAVITY * stretched_moment(&self.model)
     }
 
     fn speeds(&mut self, known: &Known, size: Size) {

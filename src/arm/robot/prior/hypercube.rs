@@ -8,9 +8,9 @@
 const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
 const MIX: [u64; 2] = [0xbf58_476d_1ce4_e5b9, 0x94d0_49bb_1331_11eb];
 
-struct Chance(u64);
+struct SplitMix64(u64);
 
-impl Chance {
+impl SplitMix64 {
     fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(STEP);
         let mut z = self.0;
@@ -29,13 +29,13 @@ impl Chance {
 /// `[number][draw]`.
 #[must_use]
 pub fn standard_normals(numbers: usize, count: usize, seed: u64) -> Vec<Vec<f64>> {
-    let mut chance = Chance(seed);
+    let mut random = SplitMix64(seed);
     let strata: Vec<f64> = (0..count).map(|i| quantile((i as f64 + 0.5) / count as f64)).collect();
     (0..numbers)
         .map(|_| {
             let mut order = strata.clone();
             for i in (1..count).rev() {
-                order.swap(i, chance.below(i + 1));
+                order.swap(i, random.below(i + 1));
             }
             order
         })

@@ -21,8 +21,8 @@ const ROBOTS: &str = include_str!("robots.toml");
 const MASS_SD: [(&str, f64); 4] =
     [("maker", 0.01), ("second hand", 0.02), ("memory", 0.05), ("guess", 0.08)];
 
-/// Known data of the robot body.
-#[derive(Clone, Debug)]
+/// Known data of the robot body; by default nothing.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Known {
     /// Total mass \[kg\], standard deviation of its logarithm, and source.
     pub(super) mass: Option<(f64, f64, String)>,
@@ -57,7 +57,7 @@ impl Known {
     /// The data of a robot by its type and its file.
     pub(super) fn from_model(model: &Model) -> Known {
         let text = table(type_name(model));
-        let mut known = text.map_or_else(Known::nothing, |text| Known::read(&text));
+        let mut known = text.map_or_else(Known::default, Known::read);
         if let Some(mass) = model.mass {
             let origin = model.origin_of("", "mass");
             let sd = origin.and_then(|origin| origin.sd.as_ref()).map_or(0.01, |sd| sd[0] / mass);
@@ -68,21 +68,8 @@ impl Known {
         known
     }
 
-    fn nothing() -> Known {
-        Known {
-            mass: None,
-            payload: None,
-            reach: None,
-            foot: None,
-            links: Vec::new(),
-            sister: false,
-            balanced: false,
-            velocity: None,
-        }
-    }
-
     fn read(text: &str) -> Known {
-        let Ok(table) = toml::from_str::<Table>(text) else { return Known::nothing() };
+        let Ok(table) = toml::from_str::<Table>(text) else { return Known::default() };
         let sd = MASS_SD.iter().find(|(word, _)| *word == table.mass_trust);
         let shape = |[share, x, y, z, moments @ ..]: [f64; 10]| Shape {
             share,
@@ -100,9 +87,7 @@ impl Known {
             velocity: table.velocity.map(|velocity| (velocity, table.velocity_source)),
         }
     }
-}
 
-impl Known {
     /// The size of the robot; unknown parts are estimated from the known ones.
     pub(super) fn size(&self, model: &Model) -> Size {
         let reach = self.reach.unwrap_or_else(|| reach(model));
@@ -115,7 +100,7 @@ impl Known {
 
 /// Accepted ratio of a stated mass to that of ABB robots of the same reach and payload, up or down;
 /// the lightest commercial arms have a fifth.
-const ABSURD: f64 = 15.0;
+const MAX_MASS_RATIO: f64 = 15.0;
 
 /// Checks that the stated masses are possible for an arm of this reach; masses in a wrong unit are
 /// not.
@@ -137,7 +122,7 @@ pub fn check_mass(model: &Model) -> Result<(), RobotError> {
              not known"
         ),
     };
-    let usual = [usual / ABSURD, usual * ABSURD];
+    let usual = [usual / MAX_MASS_RATIO, usual * MAX_MASS_RATIO];
     let [low, high] = usual;
     if let Some(mass) = model.mass.filter(|mass| !(low..=high).contains(mass)) {
         return Err(refused("mass", mass, "the mass of the whole robot", usual));
@@ -198,10 +183,10 @@ struct Table {
 }
 
 /// The text of the table of a robot without its header.
-fn table(name: &str) -> Option<String> {
+fn table(name: &str) -> Option<&'static str> {
     let (_, rest) = ROBOTS.split_once(&format!("\n[\"{name}\"]\n"))?;
     let end = rest.find("\n[\"").unwrap_or(rest.len());
-    Some(rest[..end].to_owned())
+    Some(&rest[..end])
 }
 
 #[cfg(test)]

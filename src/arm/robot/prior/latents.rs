@@ -145,17 +145,17 @@ impl Latents {
                 } else {
                     LINK_MASS[usize::from(i >= 3)]
                 };
-                rough * looseness(model, &table, "mass")
+                rough * deviation_factor(model, &table, "mass")
             });
             let group = format!("masses of link {}", i + 1);
             self.add(&group, vec![(Target::Mass(i), mass)]);
             for axis in 0..3 {
                 let own = stated(model, &table, "com", axis, 1.0);
                 let centre = if by_axes { AXES_CENTRE } else { CENTRE };
-                let rough = centre * distance * looseness(model, &table, "com");
+                let rough = centre * distance * deviation_factor(model, &table, "com");
                 self.add(&group, vec![(Target::Centre(i, axis), own.unwrap_or(rough))]);
             }
-            let inertia = LINK_INERTIA * looseness(model, &table, "inertia");
+            let inertia = LINK_INERTIA * deviation_factor(model, &table, "inertia");
             self.add(&group, vec![(Target::Inertia(i), inertia)]);
         }
     }
@@ -168,9 +168,12 @@ impl Latents {
         let viscous = |j: usize| stated(model, "friction", "viscous", j, model.friction.viscous[j]);
         let rough = |j: usize| match coulomb(j) {
             Some(_) => 0.0,
-            None => UNIT_SIZE.friction(maker, j, dof).sd * looseness(model, "friction", "coulomb"),
+            None => {
+                UNIT_SIZE.friction(maker, j, dof).sd
+                    * deviation_factor(model, "friction", "coulomb")
+            }
         };
-        let (common, own) = parted(rules::common_friction(maker));
+        let (common, own) = split_deviation(rules::common_friction(maker));
         let all = (0..dof).map(|j| (Target::Friction(j), common * rough(j))).collect();
         self.add("friction of all joints", all);
         for j in 0..dof {
@@ -178,7 +181,7 @@ impl Latents {
             match (coulomb(j), viscous(j)) {
                 (None, None) => {
                     self.add(&group, vec![(Target::Friction(j), own * rough(j))]);
-                    let share = rules::COULOMB_SD * looseness(model, "friction", "coulomb");
+                    let share = rules::COULOMB_SD * deviation_factor(model, "friction", "coulomb");
                     self.add(&group, vec![(Target::Coulomb(j), share)]);
                 }
                 (coulomb, viscous) => {
@@ -192,10 +195,10 @@ impl Latents {
 
     fn motors(&mut self, model: &Model) {
         let dof = model.links.len();
-        let (common, own) = parted(rules::COMMON_MOTORS);
+        let (common, own) = split_deviation(rules::COMMON_MOTORS);
         let rotor = rules::rotor(1.0).sd.hypot(2.0 * rules::ratio(1.0).sd);
-        let rotor = rotor * looseness(model, "motors", "rotor_inertia");
-        let loss = rules::loss(1.0).sd * looseness(model, "motors", "loss_constant");
+        let rotor = rotor * deviation_factor(model, "motors", "rotor_inertia");
+        let loss = rules::loss(1.0).sd * deviation_factor(model, "motors", "loss_constant");
         self.add("rotors", (0..dof).map(|j| (Target::Rotor(j), common * rotor)).collect());
         self.add("copper losses", (0..dof).map(|j| (Target::Loss(j), common * loss)).collect());
         for j in 0..dof {
@@ -211,7 +214,7 @@ impl Latents {
     fn power(&mut self, model: &Model) {
         let given = |table: &str, key: &str, value: f64, rough: f64| {
             let own = stated(model, table, key, 0, value);
-            own.unwrap_or_else(|| rough * looseness(model, table, key))
+            own.unwrap_or_else(|| rough * deviation_factor(model, table, key))
         };
         let standby = given("drive", "base_w", model.drive.base_w, UNIT_SIZE.standby().sd);
         self.add("base power", vec![(Target::Standby, standby)]);
@@ -223,7 +226,7 @@ impl Latents {
         let release = given("brakes", "energy_per_release_j", release_j, UNIT_SIZE.release().sd);
         self.add("release of the brakes", vec![(Target::Release, release)]);
         if model.effects.iter().any(|effect| effect.id == SPRING_EFFECT) {
-            let sd = SPRING * looseness(model, "effects.gravity_spring", "stiffness");
+            let sd = SPRING * deviation_factor(model, "effects.gravity_spring", "stiffness");
             self.add("balancer of axis 2", vec![(Target::Spring, sd)]);
         }
     }
@@ -231,7 +234,7 @@ impl Latents {
 
 /// Standard deviations of the common part and of the part of one joint, for a variance share
 /// `common` of the common part.
-fn parted(common: f64) -> (f64, f64) {
+fn split_deviation(common: f64) -> (f64, f64) {
     (common.sqrt(), (1.0 - common).sqrt())
 }
 
@@ -245,7 +248,7 @@ fn stated(model: &Model, table: &str, key: &str, index: usize, scale: f64) -> Op
 }
 
 /// Factor on the standard deviation of an estimate by the provenance of a number.
-fn looseness(model: &Model, table: &str, key: &str) -> f64 {
+fn deviation_factor(model: &Model, table: &str, key: &str) -> f64 {
     match model.provenance_of(table, key) {
         Some(Provenance::Estimated | Provenance::Assumed) => 1.0,
         Some(Provenance::Paper) | None => PAPER,

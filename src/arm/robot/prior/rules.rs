@@ -43,6 +43,13 @@ pub(super) struct Rough {
     pub(super) sd: f64,
 }
 
+impl Rough {
+    /// Standard deviation of the number itself.
+    pub(super) fn deviation(&self) -> f64 {
+        self.value.abs() * self.sd
+    }
+}
+
 /// Factor and exponent of (M R) for main axes or (p R) for wrist axes, and deviation.
 const TORQUE: [(f64, f64, f64); 6] = [
     (11.8, 0.82, 0.22),

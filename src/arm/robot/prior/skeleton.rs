@@ -119,24 +119,24 @@ fn tube(mass: f64, at: Point, way: &Point, link: f64) -> Body {
 }
 
 /// Remaining path length from each point (foot first) to the flange over the whole length.
-fn ways(points: &[Point]) -> Vec<f64> {
+fn remaining_lengths(points: &[Point]) -> Vec<f64> {
     let mut left = vec![0.0; points.len()];
     for i in (0..points.len() - 1).rev() {
         left[i] = left[i + 1] + (points[i + 1] - points[i]).norm();
     }
     let whole = left[0].max(SHORT);
-    left.iter().map(|way| way / whole).collect()
+    left.iter().map(|rest| rest / whole).collect()
 }
 
 /// Smallest remaining path length from the middle of a link: a flange has a length even if a file
 /// places it in the last joint.
-const LEAST_WAY: f64 = 0.003;
+const LEAST_REMAINDER: f64 = 0.003;
 
 /// Remaining path length from the middle of each link over the whole length, the basis of the
 /// common variation of outer links.
 pub(super) fn middles(geometry: &Geometry) -> Vec<f64> {
-    let left = ways(&Line::new(geometry).points);
-    left.windows(2).skip(1).map(|pair| (0.5 * (pair[0] + pair[1])).max(LEAST_WAY)).collect()
+    let left = remaining_lengths(&Line::new(geometry).points);
+    left.windows(2).skip(1).map(|pair| (0.5 * (pair[0] + pair[1])).max(LEAST_REMAINDER)).collect()
 }
 
 /// The links of an arm with their shares of the moving mass, and the mass of its foot \[kg\].
@@ -144,11 +144,11 @@ pub(super) fn shapes(geometry: &Geometry, size: Size) -> (Vec<Shape>, f64) {
     let line = Line::new(geometry);
     let points = &line.points;
     let count = points.len() - 1;
-    let left = ways(points);
+    let left = remaining_lengths(points);
     let load = PAYLOAD * size.payload / size.mass;
     let far = (2.0 * size.reach.powi(2) / size.mass).min(0.15);
     let segment = |i: usize| left[i] - left[i + 1];
-    let drive = |way: f64| DRIVE.0 * ((way + far) * (way + load)).powf(DRIVE.1);
+    let drive = |rest: f64| DRIVE.0 * ((rest + far) * (rest + load)).powf(DRIVE.1);
     // Per link: lump at its bearing, tube, lump at the next bearing.
     let mut parts = vec![[0.0; 3]; count];
     parts[0][0] = FOOT;

@@ -141,15 +141,14 @@ impl Spread {
 pub fn check_calibration(model: &Model) -> Result<(), RobotError> {
     let Some(calibration) = &model.calibration else { return Ok(()) };
     let known: Vec<String> = Spread::new(model).latents.into_iter().map(|l| l.name).collect();
-    match calibration.draws.iter().find(|(name, _)| !known.contains(name)) {
-        Some((name, _)) => Err(RobotError::UnknownKey {
-            place: calibration.place.clone(),
-            key: name.clone(),
-            table: "[calibration.draws]".into(),
-            known,
-        }),
-        None => Ok(()),
-    }
+    let unknown = calibration.draws.iter().find(|(name, _)| !known.contains(name));
+    let Some((name, _)) = unknown else { return Ok(()) };
+    Err(RobotError::UnknownKey {
+        place: calibration.place.clone(),
+        key: name.clone(),
+        table: "[calibration.draws]".into(),
+        known,
+    })
 }
 
 /// Largest standard deviation of a logarithm.

@@ -33,7 +33,7 @@ impl<'d> Chain<'d> {
                 fixed = placed;
                 continue;
             }
-            is_modelled(document, joint)?;
+            check_modelled(document, joint)?;
             if chain.joints.len() == MAX_DOF {
                 let message = format!(
                     "joint \"{}\" is the eighth moving one of the chain; at most {MAX_DOF} are \
@@ -52,7 +52,7 @@ impl<'d> Chain<'d> {
         }
         chain.flange = fixed;
         for joint in &document.joints {
-            beside(document, &chain, joint)?;
+            check_outside_chain(document, &chain, joint)?;
         }
         Ok(chain)
     }
@@ -96,13 +96,7 @@ fn root(document: &Document) -> Result<&Link, RobotError> {
         return Err(document.error(other.line, message));
     }
     // Each link has one parent and there is one root, so unreached links form a loop.
-    let mut reached = vec![root.name.as_str()];
-    let mut next = 0;
-    while next < reached.len() {
-        let link = reached[next];
-        reached.extend(document.joints_of(link).map(|joint| joint.child.as_str()));
-        next += 1;
-    }
+    let reached = document.links_from(&root.name);
     let lost = document.joints.iter().find(|joint| !reached.contains(&joint.child.as_str()));
     if let Some(joint) = lost {
         let message = format!(
@@ -158,8 +152,8 @@ fn path<'d>(document: &'d Document, root: &str) -> Result<Vec<&'d Joint>, RobotE
     }
 }
 
-fn is_modelled(document: &Document, joint: &Joint) -> Result<(), RobotError> {
-    is_no_mimic(document, joint)?;
+fn check_modelled(document: &Document, joint: &Joint) -> Result<(), RobotError> {
+    check_no_mimic(document, joint)?;
     if !matches!(joint.kind, Kind::Revolute | Kind::Continuous) {
         let message = format!(
             "joint \"{}\" is neither revolute nor continuous; only turning joints are modelled: \
@@ -171,7 +165,7 @@ fn is_modelled(document: &Document, joint: &Joint) -> Result<(), RobotError> {
     Ok(())
 }
 
-fn is_no_mimic(document: &Document, joint: &Joint) -> Result<(), RobotError> {
+fn check_no_mimic(document: &Document, joint: &Joint) -> Result<(), RobotError> {
     if !joint.is_mimic {
         return Ok(());
     }
@@ -184,26 +178,24 @@ fn is_no_mimic(document: &Document, joint: &Joint) -> Result<(), RobotError> {
 }
 
 /// Checks that a joint outside the chain moves no mass.
-fn beside(document: &Document, chain: &Chain<'_>, joint: &Joint) -> Result<(), RobotError> {
-    is_no_mimic(document, joint)?;
+fn check_outside_chain(
+    document: &Document,
+    chain: &Chain<'_>,
+    joint: &Joint,
+) -> Result<(), RobotError> {
+    check_no_mimic(document, joint)?;
     let of_chain = chain.joints.iter().any(|own| own.name == joint.name);
     if of_chain || joint.kind == Kind::Fixed {
         return Ok(());
     }
-    let mut links = vec![joint.child.as_str()];
-    let mut next = 0;
-    while next < links.len() {
-        let link = links[next];
-        if document.link(link).is_some_and(|link| link.inertial.is_some()) {
-            let message = format!(
-                "joint \"{}\" moves the mass of link \"{link}\" beside the arm; make it fixed, or \
-                 leave the mass out",
-                joint.name
-            );
-            return Err(document.error(joint.line, message));
-        }
-        links.extend(document.joints_of(link).map(|joint| joint.child.as_str()));
-        next += 1;
-    }
-    Ok(())
+    let has_mass = |link: &&str| document.link(link).is_some_and(|link| link.inertial.is_some());
+    let Some(link) = document.links_from(&joint.child).into_iter().find(has_mass) else {
+        return Ok(());
+    };
+    let message = format!(
+        "joint \"{}\" moves the mass of link \"{link}\" beside the arm; make it fixed, or leave the \
+         mass out",
+        joint.name
+    );
+    Err(document.error(joint.line, message))
 }

@@ -65,11 +65,11 @@ impl Document {
             let name = node.attribute("name").unwrap_or_default();
             match node.tag_name().name() {
                 "link" => {
-                    is_first(node, document.link(name).map(|link| link.line))?;
+                    check_unique(node, document.link(name).map(|link| link.line))?;
                     document.links.push(read_link(node)?);
                 }
                 "joint" => {
-                    is_first(node, document.joint(name).map(|joint| joint.line))?;
+                    check_unique(node, document.joint(name).map(|joint| joint.line))?;
                     document.joints.push(read_joint(node)?);
                 }
                 "transmission" => {
@@ -106,6 +106,17 @@ impl Document {
         self.joints.iter().find(|joint| joint.name == name)
     }
 
+    /// A link and all that hang from it, each after its parent.
+    pub(super) fn links_from<'a>(&'a self, link: &'a str) -> Vec<&'a str> {
+        let mut links = vec![link];
+        let mut next = 0;
+        while let Some(link) = links.get(next).copied() {
+            links.extend(self.joints_of(link).map(|joint| joint.child.as_str()));
+            next += 1;
+        }
+        links
+    }
+
     /// The joints whose parent is the link.
     pub(super) fn joints_of<'a>(&'a self, link: &'a str) -> impl Iterator<Item = &'a Joint> {
         self.joints.iter().filter(move |joint| joint.parent == link)
@@ -117,7 +128,7 @@ fn error(file: &str, line: usize, message: String) -> RobotError {
 }
 
 /// An error if a link or joint of that name was read before, in line `first`.
-fn is_first<'a, 'i>(node: Node<'a, 'i>, first: Option<usize>) -> Result<(), Wrong<'a, 'i>> {
+fn check_unique<'a, 'i>(node: Node<'a, 'i>, first: Option<usize>) -> Result<(), Wrong<'a, 'i>> {
     let Some(first) = first else { return Ok(()) };
     let (tag, name) = (node.tag_name().name(), node.attribute("name").unwrap_or_default());
     Err((node, format!("a second {tag} \"{name}\", the first is in line {first}; rename one")))

@@ -3,18 +3,15 @@
 use nalgebra::{Isometry3, Matrix3, Quaternion, UnitQuaternion, Vector3};
 use roxmltree::Node;
 
+use crate::arm::robot::fields::{MAX_BOUND, is_turn};
 use crate::arm::robot::link::symmetric;
 
 /// Largest distance between parts of a robot \[m\]; larger values are in millimetres.
-const FARTHEST: f64 = 50.0;
+const MAX_DISTANCE: f64 = 50.0;
 /// Largest angle of a placement \[rad\]; larger values are in degrees.
-const LARGEST_ANGLE: f64 = 13.0;
-/// Largest bound of a joint that is not endless \[rad\]; larger values are in degrees.
-const FARTHEST_TURN: f64 = 50.0;
-/// Smallest bound of endless joints \[rad\].
-const ENDLESS: f64 = 600.0;
+const MAX_ANGLE: f64 = 13.0;
 /// Largest mass of a body \[kg\].
-const HEAVIEST: f64 = 1e5;
+const MAX_MASS: f64 = 1e5;
 /// First URDF versions with quaternions, and with accelerations and other default limits.
 const WITH_QUATERNIONS: (u32, u32) = (1, 1);
 const WITH_ACCELERATIONS: (u32, u32) = (1, 2);
@@ -118,8 +115,8 @@ fn read_inertial<'a, 'i>(
     let (mass, inertia) = (part("mass")?, part("inertia")?);
     let placement = placement(link, inertial)?;
     let kilograms = number(link, mass, "value", "kg")?;
-    if !(0.0..=HEAVIEST).contains(&kilograms) {
-        let message = format!("{whose} has the mass {kilograms:?} kg; give 0 to {HEAVIEST} kg");
+    if !(0.0..=MAX_MASS).contains(&kilograms) {
+        let message = format!("{whose} has the mass {kilograms:?} kg; give 0 to {MAX_MASS} kg");
         return Err((mass, message));
     }
     let mut moments = [0.0; 6];
@@ -201,10 +198,10 @@ fn read_limit<'a, 'i>(joint: Node<'a, 'i>) -> Result<Limit, Wrong<'a, 'i>> {
         let Some(text) = node.attribute(name) else { return Ok(absent) };
         let value = text.trim().parse().ok().filter(|value: &f64| !value.is_nan());
         let value = value.ok_or_else(|| not_a_number(joint, node, name, unit))?;
-        if unit == "rad" && value.abs() > FARTHEST_TURN && value.abs() < ENDLESS {
+        if unit == "rad" && !is_turn(value) {
             let message = format!(
                 "{whose} may turn to {value} rad; limits are in radians, at most \
-                 {FARTHEST_TURN}: make it continuous, or turn degrees into radians"
+                 {MAX_BOUND}: make it continuous, or turn degrees into radians"
             );
             return Err((node, message));
         }
@@ -248,7 +245,7 @@ fn placement<'a, 'i>(
 ) -> Result<Isometry3<f64>, Wrong<'a, 'i>> {
     let Some(origin) = child(within, "origin") else { return Ok(Isometry3::identity()) };
     let mut parts = [[0.0; 3]; 2];
-    let bounds = [("xyz", FARTHEST, "metres"), ("rpy", LARGEST_ANGLE, "radians")];
+    let bounds = [("xyz", MAX_DISTANCE, "metres"), ("rpy", MAX_ANGLE, "radians")];
     for (part, (name, most, unit)) in parts.iter_mut().zip(bounds) {
         let Some(value) = vector(whose, origin, name)? else { continue };
         if value.iter().any(|x| x.abs() > most) {

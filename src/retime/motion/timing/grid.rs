@@ -47,7 +47,7 @@ pub enum GridError {
 }
 
 /// The path and the dynamics at one point, on one side of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PathPoint {
     /// Joint positions, rad.
     pub q: Joints,
@@ -98,26 +98,7 @@ pub enum SpeedBound {
 impl PathPoint {
     /// A point without dynamics: zero torques and uniform acceleration limits.
     pub fn kinematic(q: Joints, q1: Joints, q2: Joints, v_max: f64) -> PathPoint {
-        let zero = Joints::default();
-        let (m, c, g, coulomb, viscous, bias) = (zero, zero, zero, zero, zero, zero);
-        let capability = [1.0; 6];
-        let tcp_rows = [Row::default(); TCP_ROWS];
-        let v_bound = SpeedBound::None;
-        PathPoint {
-            q,
-            q1,
-            q2,
-            m,
-            c,
-            g,
-            coulomb,
-            viscous,
-            capability,
-            bias,
-            tcp_rows,
-            v_max,
-            v_bound,
-        }
+        PathPoint { q, q1, q2, v_max, capability: [1.0; 6], ..PathPoint::default() }
     }
 
     /// m u + c b + g: the torque without friction, Nm.
@@ -153,20 +134,9 @@ impl PathPoint {
     }
 
     fn is_valid(&self) -> bool {
-        let rows = [
-            self.q,
-            self.q1,
-            self.q2,
-            self.m,
-            self.c,
-            self.g,
-            self.coulomb,
-            self.viscous,
-            self.capability,
-            self.bias,
-            [self.v_max; 6],
-        ];
-        self.v_max > 0.0 && rows.as_flattened().iter().all(|x| x.is_finite())
+        let PathPoint { q, q1, q2, m, c, g, coulomb, viscous, capability, bias, v_max, .. } = self;
+        let lists = [q, q1, q2, m, c, g, coulomb, viscous, capability, bias];
+        *v_max > 0.0 && lists.into_iter().flatten().chain([v_max]).all(|x| x.is_finite())
     }
 }
 

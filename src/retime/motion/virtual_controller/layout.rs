@@ -2,12 +2,12 @@
 
 use rayon::prelude::*;
 
-use super::draft::{Draft, RunDraft, WaitDraft};
+use super::draft::{Draft, WaitDraft};
 use super::load::effective_load;
 use super::state::VirtualController;
 use crate::rapid::ir::exec::WaitResult;
 use crate::rapid::ir::movement::{Movement, Stop, Wait};
-use crate::retime::motion::run_plan::Planned;
+use crate::retime::motion::run_plan::{Planned, RunDraft};
 use crate::retime::motion::timeline::{Event, MoveRecord, Run, WaitBasis, WaitRecord, What};
 
 /// Drafts that are planned together: enough for all processors, few enough that an endless program
@@ -70,10 +70,10 @@ impl VirtualController<'_> {
     }
 
     fn lay_run(&mut self, run: RunDraft, plan: Planned) {
-        let (run, plan) = self.in_time(run, plan);
+        let (run, plan) = self.up_to_time_limit(run, plan);
         let RunDraft { movements, legs, load, .. } = run;
         let Planned { motions, mut pieces, problem, settling_s } = plan;
-        let stands = movements.last().map_or(0.0, |movement| self.stands(movement));
+        let stands = movements.last().map_or(0.0, |movement| self.stop_time(movement));
         if let Some((duration, _)) = pieces.last_mut() {
             *duration += stands;
         }
@@ -141,7 +141,7 @@ impl VirtualController<'_> {
     }
 
     /// Time at a stop point in addition to settling, s.
-    fn stands(&mut self, movement: &Movement) -> f64 {
+    fn stop_time(&mut self, movement: &Movement) -> f64 {
         match movement.stop {
             Stop::Fine => 0.0,
             Stop::Time(time) => time,
@@ -190,12 +190,11 @@ impl VirtualController<'_> {
                 (0.0, WaitBasis::Unknown)
             }
         };
-        if let Some(signal) = &wait.signal {
-            self.asked.insert(signal.to_lowercase());
-        }
-        if let Some(signal) = wait.signal.as_ref().filter(|_| self.waited_last == WaitResult::Ended)
-        {
-            self.waited.insert(signal.to_lowercase(), begin + length);
+        if let Some(signal) = wait.signal.as_ref().map(|signal| signal.to_lowercase()) {
+            self.asked.insert(signal.clone());
+            if self.waited_last == WaitResult::Ended {
+                self.waited.insert(signal, begin + length);
+            }
         }
         let duration = (length - self.ahead).max(0.0);
         self.ahead = (self.ahead - length).max(0.0);

@@ -131,6 +131,6 @@ impl Machine for VirtualController<'_> {
     }
 
     fn is_at_limit(&self) -> bool {
-        self.is_long() || self.late
+        self.is_too_large() || self.late
     }
 }

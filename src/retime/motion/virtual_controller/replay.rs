@@ -47,13 +47,6 @@ pub fn replay(
     }
     machine.flush();
     machine.lay_out();
-    let simulation = Simulation {
-        events: machine.events,
-        cycle_s: machine.time,
-        repeats_from: None,
-        unresolved: machine.notes,
-        assumed: machine.assumed,
-        inputs_asked: machine.asked,
-    };
-    (simulation, machine.settling)
+    let settling = machine.settling;
+    (machine.into_simulation(), settling)
 }

@@ -8,7 +8,7 @@ use crate::arm::robot::Model;
 use crate::rapid::ir::exec::{Note, WaitResult};
 use crate::rapid::ir::movement::{Movement, Tool};
 use crate::rapid::text::Span;
-use crate::retime::motion::timeline::{Event, What};
+use crate::retime::motion::timeline::{Event, Simulation, What};
 use crate::retime::path::Leg;
 use crate::retime::path::joint_path::{DOF, Joints};
 
@@ -79,6 +79,19 @@ impl<'a> VirtualController<'a> {
             waited: BTreeMap::new(),
             asked: BTreeSet::new(),
             moves: 0,
+        }
+    }
+
+    /// The time line.
+    pub(super) fn into_simulation(self) -> Simulation {
+        let count = self.events.len();
+        Simulation {
+            events: self.events,
+            cycle_s: self.time,
+            repeats_from: self.repeats_from.filter(|first| *first < count),
+            unresolved: self.notes,
+            assumed: self.assumed,
+            inputs_asked: self.asked,
         }
     }
 

@@ -1,10 +1,9 @@
 //! Limits on the length of a simulation.
 
-use super::draft::RunDraft;
 use super::state::VirtualController;
 use crate::arm::kinematics::fk;
 use crate::rapid::ir::movement::Movement;
-use crate::retime::motion::run_plan::Planned;
+use crate::retime::motion::run_plan::{Planned, RunDraft};
 use crate::retime::motion::timeline::What;
 use crate::retime::path::{Leg, LegKind};
 
@@ -22,7 +21,7 @@ impl VirtualController<'_> {
         self.options.max_time.unwrap_or(MAX_TIME)
     }
 
-    pub(super) fn is_long(&self) -> bool {
+    pub(super) fn is_too_large(&self) -> bool {
         let events = self.events.len() + self.drafts.len() + self.pending.len();
         self.moves > MAX_MOVES || events > MAX_EVENTS
     }
@@ -53,7 +52,11 @@ impl VirtualController<'_> {
     }
 
     /// The run up to the movement that exceeds the time limit; the robot stops after it.
-    pub(super) fn in_time(&mut self, mut run: RunDraft, plan: Planned) -> (RunDraft, Planned) {
+    pub(super) fn up_to_time_limit(
+        &mut self,
+        mut run: RunDraft,
+        plan: Planned,
+    ) -> (RunDraft, Planned) {
         let left = self.max_time() - self.time;
         let mut t = 0.0;
         let late = plan.pieces.iter().position(|(duration, _)| {
@@ -71,7 +74,7 @@ impl VirtualController<'_> {
     }
 
     /// Notes the statement at which a limit ended the simulation.
-    pub(super) fn tell_length(&mut self) {
+    pub(super) fn note_limit(&mut self) {
         let reason = if self.late {
             format!(
                 "the cycle lasts longer than {} s (--max-time): it is shown up to the end of this \
@@ -79,7 +82,7 @@ impl VirtualController<'_> {
                 self.max_time(),
                 self.time
             )
-        } else if self.is_long() {
+        } else if self.is_too_large() {
             format!(
                 "more than {MAX_MOVES} movements or {MAX_EVENTS} stops, waits and outputs, as if \
                  the program did not end: the cycle is shown up to here (--max-time ends it earlier)"

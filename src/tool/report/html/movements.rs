@@ -104,7 +104,7 @@ fn way_plots(
     index: usize,
     all: usize,
 ) -> WayPlots {
-    let corridor = Corridor::new(model, way.before, &Freedom::none());
+    let corridor = Corridor::new(model, way.before, &Freedom::default());
     let sides = [way.before, way.after].map(|run| samples(model, run, corridor.as_ref()));
     let [energy_before, energy_after] = energies(retrofit, way).map(joules);
     WayPlots {

@@ -101,7 +101,7 @@ ENDMODULE";
         let (program, entry) = read_program(&files, "main").unwrap();
         let simulation = simulate(&program, entry, &model, &Options::default());
         let What::Run(run) = &simulation.events[1].what else { panic!("no run") };
-        let corridor = Corridor::new(&model, run, &Freedom::none());
+        let corridor = Corridor::new(&model, run, &Freedom::default());
         let samples = samples(&model, run, corridor.as_ref());
 
         let area: f64 = samples
