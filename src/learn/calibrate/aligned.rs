@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::cycle::Cycle;
 use super::refusal::Refusal;
-use crate::learn::log::{Channel, Log, golden_section, interpolated, median_step};
+use crate::learn::log::{Channel, Log, golden_section, interpolated, median_step, quantile};
 
 /// Least correlation of a pass with the simulated cycle.
 const LEAST: f64 = 0.6;
@@ -62,10 +62,10 @@ pub(super) fn align(cycle: &Cycle<'_>, log: &Log) -> Result<Aligned, Refusal> {
     let expected: Vec<f64> =
         (0..COARSE as usize).map(|i| cycle.power(cycle.duration * i as f64 / COARSE)).collect();
     if mean(power) <= 0.0 {
-        return Err(Refusal::Negative { mean_w: mean(power) });
+        return Err(Refusal::Negative(mean(power)));
     }
     if power.iter().all(|w| *w == power[0]) {
-        return Err(Refusal::Constant { power_w: power[0] });
+        return Err(Refusal::Constant(power[0]));
     }
     let ratio = (mean(power) / mean(&expected).abs()).ln();
     let kilowatts = (ratio + 1000.0_f64.ln()).abs() < ratio.abs();
@@ -188,9 +188,7 @@ fn by_number(cycle: &Cycle<'_>, t: &[f64], numbers: &[f64]) -> Result<Vec<(f64, 
         .map(|(begin, lasts)| (*begin, lasts / cycle.duration));
     let whole: Vec<(f64, f64)> = whole.collect();
     if whole.is_empty() {
-        let mut all: Vec<f64> = lasting.iter().map(|(_, lasts)| *lasts).collect();
-        all.sort_by(f64::total_cmp);
-        let measured_s = all[all.len() / 2];
+        let measured_s = quantile(lasting.iter().map(|(_, lasts)| *lasts), 0.5);
         return Err(Refusal::Length { measured_s, cycle_s: cycle.duration });
     }
     Ok(whole)

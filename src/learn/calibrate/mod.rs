@@ -115,10 +115,10 @@ pub fn calibrate(
     torques: Option<&[Vec<f64>]>,
 ) -> Result<Calibrated, Refusal> {
     if model.calibration.is_some() {
-        return Err(Refusal::Again { name: model.name.clone() });
+        return Err(Refusal::Again(model.name.clone()));
     }
     let before = plausibility(model, simulation, &account(model, simulation));
-    let before = before.ok_or_else(|| Refusal::Known { name: model.name.clone() })?;
+    let before = before.ok_or_else(|| Refusal::Known(model.name.clone()))?;
     let spread = Spread::new(model);
     let own = Changes::of_one(model, &Plausible::nominal(model));
     let cycle = Cycle::new(model, simulation)?;
@@ -137,7 +137,7 @@ pub fn calibrate(
     }
     // The second pass uses the cycle of a robot that is near the log.
     let near = spread.robot(model, |k| likely.z[k]);
-    let near = drawn(model, &near).map_err(|error| Refusal::Model { reason: error.to_string() })?;
+    let near = drawn(model, &near).map_err(|error| Refusal::Model(error.to_string()))?;
     let cycle = Cycle::new(&near, simulation)?;
     let Folded { aligned, windows, along } = Folded::new(model, &cycle, log, torques)?;
     let data = Data::new(&along, &windows);
@@ -154,7 +154,7 @@ pub fn calibrate(
     let calibrated = centred(model, &spread, &likely.z, &draws)?;
     let simulated = account(&calibrated, simulation);
     let after = plausibility(&calibrated, simulation, &simulated);
-    let after = after.ok_or_else(|| Refusal::Known { name: model.name.clone() })?;
+    let after = after.ok_or_else(|| Refusal::Known(model.name.clone()))?;
     Ok(Calibrated {
         narrowed: narrowed(&spread, &draws),
         model: calibrated,
@@ -245,7 +245,7 @@ fn centred(
     });
     // The model is read back, because the file rounds its values.
     let read = from_toml("the calibrated robot", &to_toml(&new)).and_then(with_estimates);
-    read.map_err(|error| Refusal::Model { reason: error.to_string() })
+    read.map_err(|error| Refusal::Model(error.to_string()))
 }
 
 /// Draws are rounded to this number of steps per standard deviation.

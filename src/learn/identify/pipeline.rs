@@ -30,7 +30,7 @@ pub fn identify(
     settings: &Settings,
 ) -> Result<Identified, IdentifyError> {
     if settings.free != Free::All && !model.has_dynamics() {
-        return Err(IdentifyError::NoDynamics { name: model.name.clone() });
+        return Err(IdentifyError::NoDynamics(model.name.clone()));
     }
     let (among, known) = free_parameters(settings.free, model.dof);
     let mut nominal = model.clone();

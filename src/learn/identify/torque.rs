@@ -74,7 +74,7 @@ pub fn torques(model: &Model, log: &Log) -> Result<Torques, IdentifyError> {
         .or_else(|| missing("ic", |joint| Channel::PhaseCurrent(joint, 2)));
     Err(match column {
         Some(column) => IdentifyError::Column { column, joints: n },
-        None => IdentifyError::NoTorque { joints: n },
+        None => IdentifyError::NoTorque(n),
     })
 }
 
@@ -89,7 +89,7 @@ pub fn per_ampere(model: &Model) -> Result<Vec<f64>, IdentifyError> {
         (Some(motors), Some(constants)) => {
             Ok(constants.iter().zip(&motors.ratio).map(|(k, n)| k * n).collect())
         }
-        _ => Err(IdentifyError::NoConstants { name: model.name.clone() }),
+        _ => Err(IdentifyError::NoConstants(model.name.clone())),
     }
 }
 
@@ -123,7 +123,7 @@ fn of_phases(
             let lengths = all.re.iter().zip(&all.im).map(|(x, y)| x.hypot(*y));
             let lengths: Vec<f64> = lengths.collect();
             let Some(signs) = rough.signs(joint) else {
-                return Err(IdentifyError::Sign { joint: joint + 1 });
+                return Err(IdentifyError::Sign(joint + 1));
             };
             notes.push(format!(
                 "joint {}: the current vector does not turn with the rotor; its sign is that \
