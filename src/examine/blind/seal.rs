@@ -64,11 +64,11 @@ pub fn seal(labels: &[(Label, String)]) -> Result<Sealed, SealError> {
     let mut seals = String::from("case,sha256\n");
     let mut key = Key { labels: Vec::new() };
     for (label, salt) in labels {
-        let text = serde_json::to_string(label).map_err(unreadable)?;
+        let text = serde_json::to_string(label).map_err(|error| unreadable(&error))?;
         let _ = writeln!(seals, "{},{}", label.case, hash(salt, &text));
         key.labels.push(Entry { case: label.case.clone(), salt: salt.clone(), label: text });
     }
-    let key = serde_json::to_string_pretty(&key).map_err(unreadable)? + "\n";
+    let key = serde_json::to_string_pretty(&key).map_err(|error| unreadable(&error))? + "\n";
     Ok(Sealed { seals, key })
 }
 
@@ -77,7 +77,7 @@ pub fn seal(labels: &[(Label, String)]) -> Result<Sealed, SealError> {
 /// # Errors
 /// The key does not match the seals.
 pub fn open(sealed: &Sealed) -> Result<Vec<Label>, SealError> {
-    let key: Key = serde_json::from_str(&sealed.key).map_err(unreadable)?;
+    let key: Key = serde_json::from_str(&sealed.key).map_err(|error| unreadable(&error))?;
     let mut seals = Vec::new();
     for (i, row) in sealed.seals.lines().enumerate().skip(1) {
         if row.trim().is_empty() {
@@ -104,7 +104,8 @@ pub fn open(sealed: &Sealed) -> Result<Vec<Label>, SealError> {
     key.labels
         .iter()
         .map(|entry| {
-            let label: Label = serde_json::from_str(&entry.label).map_err(unreadable)?;
+            let label: Label =
+                serde_json::from_str(&entry.label).map_err(|error| unreadable(&error))?;
             if label.case == entry.case {
                 Ok(label)
             } else {
@@ -114,7 +115,7 @@ pub fn open(sealed: &Sealed) -> Result<Vec<Label>, SealError> {
         .collect()
 }
 
-fn unreadable(error: serde_json::Error) -> SealError {
+fn unreadable(error: &serde_json::Error) -> SealError {
     SealError::Key(error.to_string())
 }
 

@@ -57,7 +57,7 @@ pub(super) fn fold(
     let empty =
         Bin { rows: 0.0, t: 0.0, power: 0.0, expected: 0.0, torque: vec![0.0; torques.len()] };
     let mut bins = vec![empty; count];
-    for segment in aligned.passes.iter().flat_map(|pass| &pass.segments) {
+    for segment in aligned.passes.iter().flatten() {
         let from = t.partition_point(|t| *t < segment.log.start);
         let to = t.partition_point(|t| *t < segment.log.end);
         for i in from..to.max(from) {

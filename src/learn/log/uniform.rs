@@ -45,6 +45,7 @@ pub fn median_step(t: &[f64]) -> f64 {
 }
 
 /// The value at this share of the sorted values; 0 without any.
+#[must_use]
 pub fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
     let mut sorted: Vec<f64> = values.collect();
     sorted.sort_by(f64::total_cmp);
@@ -52,8 +53,7 @@ pub fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
 }
 
 /// The least and the largest value.
-#[must_use]
-pub fn extremes(x: &[f64]) -> [f64; 2] {
+pub(super) fn extremes(x: &[f64]) -> [f64; 2] {
     x.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(*x), high.max(*x)])
 }
 
