@@ -14,7 +14,7 @@ use crate::arm::dynamics::{
 use crate::arm::kinematics::{Body, Obstacle};
 use crate::arm::robot::Model;
 
-use super::error::ExciteError;
+use super::error::{ExciteError, rate_limits};
 use super::feasible::{Checked, Ratios, check};
 use super::information::{Information, Normal, information, log_det};
 use super::plateaus::pose;
@@ -210,11 +210,7 @@ impl<'a> Work<'a> {
 
 impl<'a> Problem<'a> {
     fn new(model: &'a Model, settings: &'a Design) -> Result<Problem<'a>, ExciteError> {
-        let lacks = |what| ExciteError::Lacks { name: model.name.clone(), what };
-        let limits = &model.limits;
-        let velocity = limits.velocity.as_ref().ok_or_else(|| lacks("joint speeds"))?;
-        let acceleration =
-            limits.acceleration.as_ref().ok_or_else(|| lacks("joint accelerations"))?;
+        let [velocity, acceleration] = rate_limits(model)?;
         let n = model.dof;
         let base = match settings.focus {
             Focus::All => base_parameters(model),
