@@ -225,7 +225,7 @@ fn unusable_logs_are_refused_with_the_way_out() {
         ((in_degrees, radians), "they seem to be in radians"),
         ((swapped, cells(&rows())), "qd2 has little to do with"),
         (scaled(16..17, &|_| 0.0), "qdd4 is 0.000 times"),
-        (scaled(7..13, &|_| -1.0), "other sense"),
+        (scaled(7..13, &|_| -1.0), "opposite sign"),
         (scaled(17..18, &degrees), "name the column qdd5_deg"),
         (scaled(0..1, &|_| 1000.0), "in ms"),
         (scaled(21..22, &|_| 0.0), "tau3 never changes"),

@@ -4,7 +4,7 @@ use super::disturbance;
 use super::fault::Disturbance;
 use super::fourier::fourier;
 use super::label::Kind;
-use super::mechanics::Joints;
+use super::mechanics::{Joints, of_slice};
 use super::model_error::ModelError;
 use super::motion::Motion;
 use super::noise::Noise;
@@ -84,7 +84,7 @@ impl<'a> Bench<'a> {
         let with_program = draws.chance(PROGRAMS);
         let with_baseline = with_program || draws.chance(0.5);
         let trust =
-            if with_baseline || draws.chance(0.4) { Trust::Commissioned } else { Trust::Cad };
+            if with_baseline || draws.chance(0.4) { Trust::COMMISSIONED } else { Trust::CAD };
         let variation = draws.log_between(VARIATION[0], VARIATION[1]);
         let heldout_works = draws.chance(0.5);
 
@@ -117,7 +117,7 @@ impl<'a> Bench<'a> {
         let mut supply = of_model;
         supply.base *= 1.0 + 0.02 * draws.normal_within(2.0);
         for loss in &mut supply.loss {
-            *loss *= 1.0 + 0.5 * trust.friction() * draws.normal_within(2.0);
+            *loss *= 1.0 + 0.5 * trust.friction * draws.normal_within(2.0);
         }
         Some(Bench {
             settings,
@@ -204,7 +204,8 @@ fn wrong(scale: &Scale<'_>, with_baseline: bool, random: &mut Random) -> (Kind, 
             let first = disturbance::torque_effect(scale, random);
             let mut second = disturbance::torque_effect(scale, random);
             for _ in 0..DRAWS {
-                if second.id != first.id && !first.equivalents.contains(&second.id) {
+                let (known, new) = (&first.truth, &second.truth);
+                if new.id != known.id && !known.equivalents.contains(&new.id) {
                     break;
                 }
                 second = disturbance::torque_effect(scale, random);
@@ -220,14 +221,10 @@ fn wrong(scale: &Scale<'_>, with_baseline: bool, random: &mut Random) -> (Kind, 
 
 /// The electrical parameters of a model, and the gear ratios.
 fn supply(model: &Model) -> (Supply, Joints) {
-    let (mut loss, mut ratio) = ([0.0; MAX_DOF], [1.0; MAX_DOF]);
-    if let Some(motors) = &model.motors {
-        for (to, from) in [(&mut loss, &motors.loss_constant), (&mut ratio, &motors.ratio)] {
-            for (to, from) in to.iter_mut().zip(from) {
-                *to = *from;
-            }
-        }
-    }
+    let (loss, ratio) = match &model.motors {
+        Some(motors) => (of_slice(&motors.loss_constant), of_slice(&motors.ratio)),
+        None => ([0.0; MAX_DOF], [1.0; MAX_DOF]),
+    };
     let drive = &model.drive;
     (Supply { base: drive.base_w, loss, regeneration: drive.regeneration }, ratio)
 }

@@ -4,7 +4,7 @@ use super::bench::{Bench, Settings, clocks};
 use super::conduct;
 use super::detect::{self, Pair, Setting};
 use super::fault::Disturbance;
-use super::label::{HeldOut, Kind, Label, TrueParameter, Truth};
+use super::label::{HeldOut, Kind, Label, Truth};
 use super::mechanics::Joints;
 use super::model_error::variation;
 use super::motion::{Motion, PER_ROW, Sample};
@@ -52,7 +52,7 @@ impl Bench<'_> {
         let mut sealed = Label {
             case: name.clone(),
             kind,
-            trust: self.trust.name().into(),
+            trust: self.trust.name.into(),
             effects: Vec::new(),
             place: None,
             share: None,
@@ -112,7 +112,7 @@ fn torque_case(bench: &Bench<'_>) -> Case {
             Kind::Power => detect::power_nats(noise, &pairs),
             _ => detect::torque_nats(&setting, &pairs),
         };
-        effects.push(truth(disturbance, nats));
+        effects.push(Truth { nats, ..disturbance.truth.clone() });
     }
     let (place, share) = match kind {
         Kind::Power => (None, None),
@@ -120,7 +120,7 @@ fn torque_case(bench: &Bench<'_>) -> Case {
         _ => largest_share(plant.dof, &with_all, &run(&[])),
     };
     let held = held_out(nominal, heldout, &bench.robot(all), &bench.robot(Vec::new()), clocks[2]);
-    let options = serde_json::json!({ "trust": trust.name(), "period": settings.period_s });
+    let options = serde_json::json!({ "trust": trust.name, "period": settings.period_s });
     bench.sealed(files, &options, kind, |label| {
         label.effects = effects;
         (label.place, label.share) = (place, share);
@@ -153,7 +153,7 @@ fn program_case(bench: &Bench<'_>) -> Case {
         logged("baseline-1.csv", &plain, 0.0),
         ("program/MainModule.mod".to_owned(), program.text()),
     ];
-    let options = serde_json::json!({ "trust": bench.trust.name(), "program": "program" });
+    let options = serde_json::json!({ "trust": bench.trust.name, "program": "program" });
     let kind = if wrong.is_some() { Kind::Motion } else { Kind::Healthy };
     bench.sealed(files, &options, kind, |label| {
         if let Some(wrong) = wrong {
@@ -162,24 +162,6 @@ fn program_case(bench: &Bench<'_>) -> Case {
             label.effects = vec![Truth { nats: wrong.nats_per_cycle * logs, ..wrong.truth }];
         }
     })
-}
-
-fn truth(disturbance: &Disturbance, nats: f64) -> Truth {
-    let parameters = disturbance.parameters.iter().map(|parameter| TrueParameter {
-        name: parameter.name.into(),
-        joint: parameter.joint.map(|joint| joint + 1),
-        value: parameter.value,
-        graded: parameter.graded,
-    });
-    Truth {
-        id: disturbance.id.into(),
-        form: disturbance.form.into(),
-        joints: disturbance.joints.iter().map(|joint| joint + 1).collect(),
-        parameters: parameters.collect(),
-        window: disturbance.window,
-        equivalents: disturbance.equivalents.iter().map(|&id| id.to_owned()).collect(),
-        nats,
-    }
 }
 
 /// The joint, from 1, with the largest relative change of its torques, and its share.

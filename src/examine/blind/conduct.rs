@@ -61,20 +61,9 @@ pub(super) fn motion_effect(
     let mut squares: f64 = later.map(|late| late * late).sum();
     squares += conduct.pause.map_or(0.0, |(_, wait, _)| wait * wait);
     squares += conduct.lag * conduct.lag * (program.moves() - 1) as f64;
-    let truth = Truth {
-        id: id.into(),
-        form: form.into(),
-        joints: Vec::new(),
-        parameters: vec![TrueParameter {
-            name: name.into(),
-            joint: None,
-            value,
-            graded: matches!(id, "program_wait"),
-        }],
-        window: None,
-        equivalents: Vec::new(),
-        nats: 0.0,
-    };
+    let graded = id == "program_wait";
+    let parameter = TrueParameter { name: name.into(), joint: None, value, graded };
+    let truth = Truth { parameters: vec![parameter], ..Truth::new(id, form, &[]) };
     let nats_per_cycle = 0.5 * squares / (2.0 * JITTER_S * JITTER_S);
     Misconduct { conduct, truth, lines, nats_per_cycle }
 }

@@ -197,9 +197,9 @@ fn columns_at(setting: &Setting<'_>, sample: &Sample, columns: usize) -> DMatrix
     for motor in 0..n {
         let dry = if rate[motor] == 0.0 { 0.0 } else { rate[motor].signum() };
         for torque in [
-            trust.friction() * nominal.coulomb[motor] * dry,
-            trust.friction() * nominal.viscous[motor] * rate[motor],
-            trust.inertia() * nominal.rotor[motor] * acceleration[motor],
+            trust.friction * nominal.coulomb[motor] * dry,
+            trust.friction * nominal.viscous[motor] * rate[motor],
+            trust.inertia * nominal.rotor[motor] * acceleration[motor],
         ] {
             let mut at_motors = [0.0; MAX_DOF];
             at_motors[motor] = torque;
@@ -221,12 +221,12 @@ fn columns_at(setting: &Setting<'_>, sample: &Sample, columns: usize) -> DMatrix
 
 /// The body with each of its parameters increased by a standard deviation.
 fn varied(body: &Body, trust: Trust) -> [Body; OF_BODY] {
-    let moment = trust.inertia() * body.inertia.trace() / 3.0;
+    let moment = trust.inertia * body.inertia.trace() / 3.0;
     std::array::from_fn(|number| {
         let mut body = body.clone();
         match number {
-            0 => body.mass *= 1.0 + trust.mass(),
-            1..=3 => body.com += Vector3::ith(number - 1, trust.com()),
+            0 => body.mass *= 1.0 + trust.mass,
+            1..=3 => body.com += Vector3::ith(number - 1, trust.com),
             4..=6 => body.inertia[(number - 4, number - 4)] += moment,
             _ => {
                 let (a, b) = [(0, 1), (0, 2), (1, 2)][number - 7];
@@ -272,7 +272,7 @@ mod tests {
         let error = ModelError::drawn(6, &sizes, &sizes, &sizes, &sizes, &mut random);
         let setting = Setting {
             nominal: &nominal,
-            trust: Trust::Commissioned,
+            trust: Trust::COMMISSIONED,
             error: &error,
             noise: &noise,
             variation: 0.002,
@@ -281,12 +281,12 @@ mod tests {
             torque_nats(&setting, &[Pair { motion: &motion, with, without: &without }])
         };
         let mut other = nominal.clone();
-        let change = setting.trust.friction() * other.viscous[1];
+        let change = setting.trust.friction * other.viscous[1];
         other.viscous[1] += change;
         let of_parameter = nats(&rows(&other, 0.0));
         assert!(of_parameter > 0.0 && of_parameter <= 0.5 + 1e-6, "{of_parameter}");
         other = nominal.clone();
-        other.bodies[2].mass *= 1.0 + setting.trust.mass();
+        other.bodies[2].mass *= 1.0 + setting.trust.mass;
         assert!(nats(&rows(&other, 0.0)) <= 0.5 + 1e-6);
         let offset = nats(&rows(&nominal, 5.0));
         assert!(offset > 20.0 * of_parameter, "{offset}");

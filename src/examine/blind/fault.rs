@@ -1,72 +1,49 @@
 //! A simulated fault and its true parameters.
 
 use super::action::Action;
-
-/// A true parameter.
-#[derive(Clone, Debug)]
-pub(super) struct Parameter {
-    pub(super) name: &'static str,
-    pub(super) joint: Option<usize>,
-    pub(super) value: f64,
-    /// Whether its value is independent of the form of the law.
-    pub(super) graded: bool,
-}
+use super::label::{TrueParameter, Truth};
 
 /// A fault of a robot or its log.
 pub(super) struct Disturbance {
-    /// Effect id; `outside` for a fault without a corresponding effect.
-    pub(super) id: &'static str,
-    pub(super) form: &'static str,
-    /// Joints, from 0; empty for a fault of the whole arm.
-    pub(super) joints: Vec<usize>,
-    pub(super) parameters: Vec<Parameter>,
-    /// Interval within the period \[s\].
-    pub(super) window: Option<[f64; 2]>,
-    /// Effects with exactly the same torques in this case.
-    pub(super) equivalents: &'static [&'static str],
+    /// What the label says of it; `nats` is set later.
+    pub(super) truth: Truth,
     pub(super) actions: Vec<Action>,
 }
 
 impl Disturbance {
-    pub(super) fn new(id: &'static str, form: &'static str, joints: Vec<usize>) -> Disturbance {
-        Disturbance {
-            id,
-            form,
-            joints,
-            parameters: Vec::new(),
-            window: None,
-            equivalents: &[],
-            actions: Vec::new(),
-        }
+    /// A fault of these joints, from 0; without any, of the whole arm.
+    pub(super) fn new(id: &str, form: &str, joints: &[usize]) -> Disturbance {
+        Disturbance { truth: Truth::new(id, form, joints), actions: Vec::new() }
     }
 
-    pub(super) fn at_joint(id: &'static str, form: &'static str, joint: usize) -> Disturbance {
-        Disturbance::new(id, form, vec![joint])
+    pub(super) fn at_joint(id: &str, form: &str, joint: usize) -> Disturbance {
+        Disturbance::new(id, form, &[joint])
     }
 
     /// Adds a parameter whose meaning is independent of the law's form.
-    pub(super) fn graded(self, name: &'static str, value: f64) -> Disturbance {
+    pub(super) fn graded(self, name: &str, value: f64) -> Disturbance {
         self.parameter(name, value, true)
     }
 
     /// Adds a parameter specific to this form.
-    pub(super) fn with(self, name: &'static str, value: f64) -> Disturbance {
+    pub(super) fn with(self, name: &str, value: f64) -> Disturbance {
         self.parameter(name, value, false)
     }
 
-    pub(super) fn parameter(mut self, name: &'static str, value: f64, graded: bool) -> Disturbance {
-        let joint = self.joints.first().copied();
-        self.parameters.push(Parameter { name, joint, value, graded });
+    fn parameter(mut self, name: &str, value: f64, graded: bool) -> Disturbance {
+        let joint = self.truth.joints.first().copied();
+        self.truth.parameters.push(TrueParameter { name: name.into(), joint, value, graded });
         self
     }
 
     pub(super) fn within(mut self, window: [f64; 2]) -> Disturbance {
-        self.window = Some(window);
+        self.truth.window = Some(window);
         self
     }
 
-    pub(super) fn like(mut self, equivalents: &'static [&'static str]) -> Disturbance {
-        self.equivalents = equivalents;
+    /// Effects with exactly the same torques in this case.
+    pub(super) fn like(mut self, equivalents: &[&str]) -> Disturbance {
+        self.truth.equivalents = equivalents.iter().map(|&id| id.to_owned()).collect();
         self
     }
 

@@ -8,7 +8,6 @@ use std::f64::consts::TAU;
 use super::motion::{Motion, STEP_S, Sample};
 use super::random::Random;
 use super::workspace::Workspace;
-use crate::arm::robot::MAX_DOF;
 
 /// Number of harmonics of a joint.
 const HARMONICS: usize = 5;
@@ -18,8 +17,7 @@ const LARGEST_SHARE: f64 = 0.85;
 /// A motion with the period `period_s` within the workspace.
 pub(super) fn fourier(workspace: &Workspace, period_s: f64, random: &mut Random) -> Motion {
     let count = (period_s / STEP_S).round() as usize;
-    let blank = Sample { q: [0.0; MAX_DOF], qd: [0.0; MAX_DOF], qdd: [0.0; MAX_DOF] };
-    let mut samples = vec![blank; count];
+    let mut samples = vec![Sample::ZERO; count];
     for joint in 0..workspace.dof {
         let mut waves = Vec::new();
         for harmonic in 1..=HARMONICS {

@@ -80,6 +80,21 @@ pub struct Truth {
     pub nats: f64,
 }
 
+impl Truth {
+    /// A fault of these joints, from 0; its detectability is not yet known.
+    pub(super) fn new(id: &str, form: &str, joints: &[usize]) -> Truth {
+        Truth {
+            id: id.into(),
+            form: form.into(),
+            joints: joints.iter().map(|joint| joint + 1).collect(),
+            parameters: Vec::new(),
+            window: None,
+            equivalents: Vec::new(),
+            nats: 0.0,
+        }
+    }
+}
+
 /// A parameter of a fault.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TrueParameter {

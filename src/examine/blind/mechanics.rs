@@ -18,6 +18,18 @@ use crate::arm::robot::{Geometry, MAX_DOF};
 /// A number for each joint; surplus entries are 0.
 pub(super) type Joints = [f64; MAX_DOF];
 
+/// Adds numbers of each joint.
+pub(super) fn add(sum: &mut Joints, part: &Joints) {
+    for (sum, part) in sum.iter_mut().zip(part) {
+        *sum += part;
+    }
+}
+
+/// The first of `values` as a number for each joint; missing ones are 0.
+pub(super) fn of_slice(values: &[f64]) -> Joints {
+    std::array::from_fn(|joint| values.get(joint).copied().unwrap_or_default())
+}
+
 /// Gravitational acceleration \[m/s²\].
 pub(super) const GRAVITY: f64 = 9.81;
 

@@ -23,6 +23,7 @@ mod motion;
 mod noise;
 mod pick_place;
 mod plant;
+mod profile;
 mod program;
 mod random;
 mod robots;

@@ -1,6 +1,7 @@
 //! A periodic motion, sampled finely.
 
 use super::mechanics::Joints;
+use crate::arm::robot::MAX_DOF;
 
 /// Sampling interval of the simulation \[s\].
 pub(super) const STEP_S: f64 = 0.002;
@@ -19,6 +20,12 @@ pub(super) struct Sample {
     pub(super) q: Joints,
     pub(super) qd: Joints,
     pub(super) qdd: Joints,
+}
+
+impl Sample {
+    /// All joints at the angle 0, at rest.
+    pub(super) const ZERO: Sample =
+        Sample { q: [0.0; MAX_DOF], qd: [0.0; MAX_DOF], qdd: [0.0; MAX_DOF] };
 }
 
 impl Motion {

@@ -2,64 +2,18 @@
 
 use super::mechanics::Joints;
 use super::motion::{Motion, STEP_S, Sample};
+use super::profile::Profile;
 use super::random::Random;
 use super::workspace::Workspace;
 use crate::arm::robot::MAX_DOF;
 
 /// Number of poses in a cycle.
 const POSES: usize = 6;
+/// Least duration of a move \[s\].
+const LEAST_S: f64 = 0.05;
 /// Bounds of the share of a cycle in which the robot moves; otherwise it waits.
 const SHORTEST_MOVING: f64 = 0.55;
 const LONGEST_MOVING: f64 = 0.85;
-
-/// Time profile of a move, normalised to distance 1 and duration 1.
-#[derive(Clone, Copy)]
-enum Profile {
-    /// Trapezoidal speed with the share of time of each ramp.
-    Trapezoid(f64),
-    Quintic,
-    /// Half a cosine wave.
-    Cosine,
-}
-
-impl Profile {
-    /// Position, rate and acceleration at the normalised time `x`.
-    fn at(self, x: f64) -> [f64; 3] {
-        match self {
-            Profile::Quintic => [
-                x.powi(3) * (10.0 + x * (6.0 * x - 15.0)),
-                30.0 * (x * (1.0 - x)).powi(2),
-                60.0 * x * (1.0 - x) * (1.0 - 2.0 * x),
-            ],
-            Profile::Cosine => {
-                let (sin, cos) = (std::f64::consts::PI * x).sin_cos();
-                let pi = std::f64::consts::PI;
-                [0.5 * (1.0 - cos), 0.5 * pi * sin, 0.5 * pi * pi * cos]
-            }
-            Profile::Trapezoid(ramp) => {
-                let top = 1.0 / (1.0 - ramp);
-                let push = top / ramp;
-                if x < ramp {
-                    [0.5 * push * x * x, push * x, push]
-                } else if x > 1.0 - ramp {
-                    let left = 1.0 - x;
-                    [1.0 - 0.5 * push * left * left, push * left, -push]
-                } else {
-                    [top * (x - 0.5 * ramp), top, 0.0]
-                }
-            }
-        }
-    }
-
-    /// Largest rate and acceleration of the normalised move.
-    fn peaks(self) -> [f64; 2] {
-        match self {
-            Profile::Quintic => [1.875, 5.7736],
-            Profile::Cosine => [std::f64::consts::FRAC_PI_2, 4.9349],
-            Profile::Trapezoid(ramp) => [1.0 / (1.0 - ramp), 1.0 / (ramp * (1.0 - ramp))],
-        }
-    }
-}
 
 /// A cycle of `period_s` within the workspace.
 pub(super) fn pick_place(workspace: &Workspace, period_s: f64, random: &mut Random) -> Motion {
@@ -77,7 +31,11 @@ pub(super) fn pick_place(workspace: &Workspace, period_s: f64, random: &mut Rand
     let sum: f64 = shares.iter().sum();
     let needed = |poses: &[Joints]| -> Vec<f64> {
         let pairs = (0..POSES).map(|i| (&poses[i], &poses[(i + 1) % POSES], profiles[i]));
-        pairs.map(|(from, to, profile)| shortest(workspace, from, to, profile)).collect()
+        pairs
+            .map(|(from, to, profile)| {
+                profile.least_time(workspace, [1.0; 2], from, to).max(LEAST_S)
+            })
+            .collect()
     };
     // Poses are contracted until the moves fit into the available time.
     let total: f64 = needed(&poses).iter().sum();
@@ -106,7 +64,7 @@ pub(super) fn pick_place(workspace: &Workspace, period_s: f64, random: &mut Rand
             let (from, to) = (&poses[i], &poses[(i + 1) % POSES]);
             let x = (t - start) / lasts;
             let [s, sd, sdd] = if x < 1.0 { profiles[i].at(x) } else { [1.0, 0.0, 0.0] };
-            let mut sample = Sample { q: [0.0; MAX_DOF], qd: [0.0; MAX_DOF], qdd: [0.0; MAX_DOF] };
+            let mut sample = Sample::ZERO;
             for joint in 0..workspace.dof {
                 let way = to[joint] - from[joint];
                 sample.q[joint] = from[joint] + way * s;
@@ -125,16 +83,4 @@ fn pose(workspace: &Workspace, random: &mut Random) -> Joints {
         q[joint] = random.between(*from, *to);
     }
     q
-}
-
-/// Least duration of a move within the limits \[s\].
-fn shortest(workspace: &Workspace, from: &Joints, to: &Joints, profile: Profile) -> f64 {
-    let [rate, push] = profile.peaks();
-    (0..workspace.dof)
-        .map(|joint| {
-            let way = (to[joint] - from[joint]).abs();
-            let by_rate = rate * way / workspace.velocity[joint];
-            by_rate.max((push * way / workspace.acceleration[joint]).sqrt())
-        })
-        .fold(0.05, f64::max)
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
 
-use super::mechanics::{Axes, Body, GRAVITY, Joints};
+use super::mechanics::{Axes, Body, GRAVITY, Joints, add, of_slice};
 use crate::arm::robot::{Geometry, Link, MAX_DOF, Model};
 
 /// Axes 5 and 6, from 0.
@@ -30,13 +30,6 @@ pub(super) struct Plant {
 impl Plant {
     /// The plant of a robot model.
     pub(super) fn new(model: &Model) -> Plant {
-        let per_joint = |values: &[f64]| {
-            let mut joints = [0.0; MAX_DOF];
-            for (to, from) in joints.iter_mut().zip(values) {
-                *to = *from;
-            }
-            joints
-        };
         let mut rotor = [0.0; MAX_DOF];
         if let Some(motors) = &model.motors {
             for (joint, inertia) in rotor.iter_mut().enumerate().take(model.dof) {
@@ -55,8 +48,8 @@ impl Plant {
             bodies: model.links.iter().enumerate().map(body).collect(),
             up: model.kinematics.up() * GRAVITY,
             rotor,
-            coulomb: per_joint(&model.friction.coulomb),
-            viscous: per_joint(&model.friction.viscous),
+            coulomb: of_slice(&model.friction.coulomb),
+            viscous: of_slice(&model.friction.viscous),
             coupling: model.wrist.coupling,
         }
     }
@@ -119,9 +112,7 @@ impl Plant {
                 + self.coulomb[i] * sign
                 + self.viscous[i] * rate[i];
         }
-        for (sum, part) in tau.iter_mut().zip(self.at_joints(gears)) {
-            *sum += part;
-        }
+        add(&mut tau, &self.at_joints(gears));
         tau
     }
 

@@ -7,6 +7,7 @@ use std::fmt::Write as _;
 
 use super::mechanics::Joints;
 use super::motion::{Motion, STEP_S, Sample};
+use super::profile::Profile;
 use super::random::Random;
 use super::workspace::Workspace;
 use crate::arm::robot::MAX_DOF;
@@ -21,8 +22,8 @@ const SPARE: [f64; 2] = [1.03, 1.6];
 const FIRST_LINE: usize = 3;
 /// Standard deviation of the start of a move \[s\].
 pub(super) const JITTER_S: f64 = 0.003;
-/// Largest rate and acceleration of a quintic with distance 1 and duration 1.
-const PEAKS: [f64; 2] = [1.875, 5.7736];
+/// Least duration of a move \[s\].
+const LEAST_S: f64 = 0.2;
 
 /// A cycle of moves and waits that ends at its start.
 #[derive(Clone, Debug)]
@@ -65,11 +66,8 @@ pub(super) struct Course {
 
 impl Program {
     pub(super) fn drawn(workspace: &Workspace, random: &mut Random) -> Program {
-        let mut program = Program { targets: Vec::new(), times: Vec::new(), waits: Vec::new() };
         let mut at = pose(workspace, random);
-        program.targets.push(at);
-        program.times.push(0.0);
-        program.waits.push(0.0);
+        let mut program = Program { targets: vec![at], times: vec![0.0], waits: vec![0.0] };
         for i in 1..=MOVES {
             let next = if i == MOVES { program.targets[0] } else { pose(workspace, random) };
             let spare = random.between(SPARE[0], SPARE[1]);
@@ -178,22 +176,15 @@ fn pose(workspace: &Workspace, random: &mut Random) -> Joints {
 
 /// The least duration of a move within the limits \[s\].
 fn least_time(workspace: &Workspace, from: &Joints, to: &Joints, conduct: &Conduct) -> f64 {
-    (0..workspace.dof)
-        .map(|joint| {
-            let way = (to[joint] - from[joint]).abs();
-            let by_rate = PEAKS[0] * way / (conduct.speed * workspace.velocity[joint]);
-            let limit = conduct.acceleration * workspace.acceleration[joint];
-            by_rate.max((PEAKS[1] * way / limit).sqrt())
-        })
-        .fold(0.2, f64::max)
+    let limits = [conduct.speed, conduct.acceleration];
+    Profile::Quintic.least_time(workspace, limits, from, to).max(LEAST_S)
 }
 
 /// The state of a quintic at the normalised time `x`.
 fn between(from: &Joints, to: &Joints, x: f64, lasts: f64) -> Sample {
-    let s = x.powi(3) * (10.0 + x * (6.0 * x - 15.0));
-    let sd = 30.0 * (x * (1.0 - x)).powi(2) / lasts;
-    let sdd = 60.0 * x * (1.0 - x) * (1.0 - 2.0 * x) / (lasts * lasts);
-    let mut sample = Sample { q: *from, qd: [0.0; MAX_DOF], qdd: [0.0; MAX_DOF] };
+    let [s, sd, sdd] = Profile::Quintic.at(x);
+    let (sd, sdd) = (sd / lasts, sdd / (lasts * lasts));
+    let mut sample = Sample { q: *from, ..Sample::ZERO };
     for joint in 0..MAX_DOF {
         let way = to[joint] - from[joint];
         sample.q[joint] += way * s;

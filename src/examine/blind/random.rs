@@ -57,6 +57,15 @@ impl Random {
         if count == 0 { 0 } else { (self.unit() * count as f64) as usize }
     }
 
+    /// Index and name of one of the forms of a law.
+    pub(super) fn form<const N: usize>(
+        &mut self,
+        forms: [&'static str; N],
+    ) -> (usize, &'static str) {
+        let form = self.below(N);
+        (form, forms[form])
+    }
+
     /// Standard normal (G. E. P. Box, M. E. Muller 1958).
     pub(super) fn normal(&mut self) -> f64 {
         let radius = (-2.0 * (1.0 - self.unit()).ln()).sqrt();

@@ -3,7 +3,7 @@
 use super::action::{Action, Change, Moment, PowerChange};
 use super::compliance::Compliance;
 use super::fault::Disturbance;
-use super::mechanics::Joints;
+use super::mechanics::{Joints, add};
 use super::model_error::ModelError;
 use super::motion::{Motion, PER_ROW, STEP_S, Sample};
 use super::plant::Plant;
@@ -137,9 +137,7 @@ impl Changes {
         }
         apply(&mut self.gears, moment, &mut at_motors);
         let mut tau = rigid;
-        for (sum, part) in tau.iter_mut().zip(plant.at_joints(at_motors)) {
-            *sum += part;
-        }
+        add(&mut tau, &plant.at_joints(at_motors));
         apply(&mut self.joints, moment, &mut tau);
         robot.error.add(moment, &mut tau);
         let mut watts: f64 = (0..plant.dof)

@@ -18,12 +18,8 @@ pub(super) struct Sizes {
 }
 
 pub(super) fn sizes(plant: &Plant, motions: &[Motion]) -> Sizes {
-    let mut sizes = Sizes {
-        rms: [0.0; MAX_DOF],
-        peak: [0.0; MAX_DOF],
-        fastest: [0.0; MAX_DOF],
-        load: [0.0; MAX_DOF],
-    };
+    let zero = [0.0; MAX_DOF];
+    let mut sizes = Sizes { rms: zero, peak: zero, fastest: zero, load: zero };
     let mut count = 0.0;
     for sample in motions.iter().flat_map(|motion| motion.samples.iter().step_by(LOOK)) {
         let tau = plant.torque(&sample.q, &sample.qd, &sample.qdd);

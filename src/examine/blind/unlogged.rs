@@ -46,29 +46,23 @@ pub fn unlogged(settings: &Settings, number: usize, count: usize) -> Option<Vec<
     });
     let steady = [[1.0; MAX_DOF]; ROUNDS];
     let dof = robot.plant.dof;
-    Some(
-        motions
-            .map(|of| last_round(&of, &simulate(&robot, &of, clock, &steady), clock, dof))
-            .collect(),
-    )
+    let last = |of| last_round(&of, &simulate(&robot, &of, clock, &steady), clock, dof);
+    Some(motions.map(last).collect())
 }
 
 fn last_round(motion: &Motion, rows: &[Row], clock: f64, dof: usize) -> Unlogged {
     let samples: Vec<&Sample> = motion.samples.iter().step_by(PER_ROW).collect();
     let rows = &rows[rows.len() - samples.len()..];
-    let of_rows = |of: &dyn Fn(&Row, usize) -> f64| -> Vec<Vec<f64>> {
-        (0..dof).map(|joint| rows.iter().map(|row| of(row, joint)).collect()).collect()
-    };
-    let of_samples = |of: &dyn Fn(&Sample, usize) -> f64| -> Vec<Vec<f64>> {
-        (0..dof).map(|joint| samples.iter().map(|sample| of(sample, joint)).collect()).collect()
+    let by_joint = |value: &dyn Fn(usize, usize) -> f64| -> Vec<Vec<f64>> {
+        (0..dof).map(|joint| (0..rows.len()).map(|row| value(row, joint)).collect()).collect()
     };
     let began = clock + (ROUNDS - 1) as f64 * motion.period_s();
     Unlogged {
         t: (0..rows.len()).map(|row| began + ROW_S * row as f64).collect(),
-        q: of_rows(&|row, joint| row.q[joint]),
-        qd: of_samples(&|sample, joint| sample.qd[joint]),
-        qdd: of_samples(&|sample, joint| sample.qdd[joint]),
-        tau: of_rows(&|row, joint| row.tau[joint]),
+        q: by_joint(&|row, joint| rows[row].q[joint]),
+        qd: by_joint(&|row, joint| samples[row].qd[joint]),
+        qdd: by_joint(&|row, joint| samples[row].qdd[joint]),
+        tau: by_joint(&|row, joint| rows[row].tau[joint]),
         power: rows.iter().map(|row| row.power).collect(),
     }
 }

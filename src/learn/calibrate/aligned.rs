@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::cycle::Cycle;
 use super::refusal::Refusal;
-use crate::learn::log::{Channel, Log, golden_section, interpolated, median_step};
+use crate::learn::log::{Channel, Log, golden_section, interpolated, median_step, quantile};
 
 /// Least correlation of a pass with the simulated cycle.
 const LEAST: f64 = 0.6;
@@ -29,9 +29,7 @@ pub(super) struct Aligned {
 }
 
 /// One pass of the cycle.
-pub(super) struct Pass {
-    pub(super) segments: Vec<Segment>,
-}
+pub(super) type Pass = Vec<Segment>;
 
 /// A part of a pass in which the clocks of log and simulation differ by a constant factor.
 pub(super) struct Segment {
@@ -46,7 +44,7 @@ pub(super) struct Segment {
 impl Aligned {
     /// Total duration of the passes over the simulated one.
     pub(super) fn pace(&self) -> f64 {
-        let segments = self.passes.iter().flat_map(|pass| &pass.segments);
+        let segments = self.passes.iter().flatten();
         let [log, simulated] = segments.fold([0.0, 0.0], |[log, simulated], segment| {
             let lasts = segment.log.end - segment.log.start;
             [log + lasts, simulated + lasts / segment.pace]
@@ -62,10 +60,10 @@ pub(super) fn align(cycle: &Cycle<'_>, log: &Log) -> Result<Aligned, Refusal> {
     let expected: Vec<f64> =
         (0..COARSE as usize).map(|i| cycle.power(cycle.duration * i as f64 / COARSE)).collect();
     if mean(power) <= 0.0 {
-        return Err(Refusal::Negative { mean_w: mean(power) });
+        return Err(Refusal::Negative(mean(power)));
     }
     if power.iter().all(|w| *w == power[0]) {
-        return Err(Refusal::Constant { power_w: power[0] });
+        return Err(Refusal::Constant(power[0]));
     }
     let ratio = (mean(power) / mean(&expected).abs()).ln();
     let kilowatts = (ratio + 1000.0_f64.ln()).abs() < ratio.abs();
@@ -84,7 +82,7 @@ pub(super) fn align(cycle: &Cycle<'_>, log: &Log) -> Result<Aligned, Refusal> {
             return Err(Refusal::Shape { correlation: best, least: LEAST });
         }
         let fitting = passes.into_iter().filter(|(_, fit)| *fit >= LEAST);
-        fitting.map(|(segment, _)| Pass { segments: vec![segment] }).collect()
+        fitting.map(|(segment, _)| vec![segment]).collect()
     };
     Ok(Aligned { passes, kilowatts })
 }
@@ -96,11 +94,9 @@ pub(super) fn check_alike(cycle: &Cycle<'_>, log: &Log, passes: &[Pass]) -> Resu
     let place = |at: f64| t.partition_point(|t| *t < at);
     let mut levels: Vec<(f64, f64)> = Vec::new();
     for pass in passes {
-        let Some(begin_s) = pass.segments.first().map(|segment| segment.log.start) else {
-            continue;
-        };
+        let Some(begin_s) = pass.first().map(|segment| segment.log.start) else { continue };
         let (mut measured, mut expected) = (0.0, 0.0);
-        for segment in &pass.segments {
+        for segment in pass {
             for i in place(segment.log.start)..place(segment.log.end) {
                 measured += power[i];
                 expected += cycle.power(segment.begin + (t[i] - segment.log.start) / segment.pace);
@@ -144,7 +140,7 @@ fn by_command(cycle: &Cycle<'_>, t: &[f64], commands: &[f64]) -> Result<Vec<Pass
         };
         if number > 0 {
             if passes.is_empty() || (last != usize::MAX && number <= last) {
-                passes.push(Pass { segments: Vec::new() });
+                passes.push(Pass::new());
             }
             last = number;
         }
@@ -159,10 +155,10 @@ fn by_command(cycle: &Cycle<'_>, t: &[f64], commands: &[f64]) -> Result<Vec<Pass
             continue;
         };
         if let Some(pass) = passes.last_mut() {
-            pass.segments.push(segment);
+            pass.push(segment);
         }
     }
-    passes.retain(|pass| !pass.segments.is_empty());
+    passes.retain(|pass| !pass.is_empty());
     if passes.is_empty() {
         let log_s = t.last().unwrap_or(&0.0) - t.first().unwrap_or(&0.0);
         return Err(Refusal::Short { log_s, cycle_s: cycle.duration });
@@ -188,9 +184,7 @@ fn by_number(cycle: &Cycle<'_>, t: &[f64], numbers: &[f64]) -> Result<Vec<(f64, 
         .map(|(begin, lasts)| (*begin, lasts / cycle.duration));
     let whole: Vec<(f64, f64)> = whole.collect();
     if whole.is_empty() {
-        let mut all: Vec<f64> = lasting.iter().map(|(_, lasts)| *lasts).collect();
-        all.sort_by(f64::total_cmp);
-        let measured_s = all[all.len() / 2];
+        let measured_s = quantile(lasting.iter().map(|(_, lasts)| *lasts), 0.5);
         return Err(Refusal::Length { measured_s, cycle_s: cycle.duration });
     }
     Ok(whole)

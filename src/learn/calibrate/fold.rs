@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::aligned::Aligned;
 use super::cycle::Cycle;
-use crate::learn::log::{Channel, Log, median_step};
+use crate::learn::log::{Channel, Log, median_step, quantile};
 
 /// Approximate largest numbers of instants and of windows in a cycle.
 const INSTANTS: f64 = 2000.0;
@@ -57,7 +57,7 @@ pub(super) fn fold(
     let empty =
         Bin { rows: 0.0, t: 0.0, power: 0.0, expected: 0.0, torque: vec![0.0; torques.len()] };
     let mut bins = vec![empty; count];
-    for segment in aligned.passes.iter().flat_map(|pass| &pass.segments) {
+    for segment in aligned.passes.iter().flatten() {
         let from = t.partition_point(|t| *t < segment.log.start);
         let to = t.partition_point(|t| *t < segment.log.end);
         for i in from..to.max(from) {
@@ -134,9 +134,7 @@ struct Noise {
 impl Noise {
     /// Estimate from the second differences of small and of large values.
     fn estimated(values: &[f64]) -> Noise {
-        let mut sorted: Vec<f64> = values.iter().map(|x| x.abs()).collect();
-        sorted.sort_by(f64::total_cmp);
-        let middle = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
+        let middle = quantile(values.iter().map(|x| x.abs()), 0.5);
         let square = |part: &dyn Fn(f64) -> bool| {
             let of: Vec<f64> = values.iter().copied().filter(|x| part(*x)).collect();
             of.iter().map(|x| x * x).sum::<f64>() / of.len().max(1) as f64
@@ -160,9 +158,7 @@ const QUIET: f64 = 1e-6;
 /// Variance of the noise from second differences of the values that `meant` selects.
 fn differences(values: &[f64], meant: impl Fn(f64) -> bool) -> f64 {
     let triples = values.windows(3).filter(|triple| triple.iter().all(|x| meant(*x)));
-    let mut all: Vec<f64> =
-        triples.map(|triple| (triple[0] - 2.0 * triple[1] + triple[2]).abs()).collect();
-    all.sort_by(f64::total_cmp);
-    let median = all.get(all.len() / 2).copied().unwrap_or(0.0);
+    let median =
+        quantile(triples.map(|triple| (triple[0] - 2.0 * triple[1] + triple[2]).abs()), 0.5);
     (OF_MEDIAN * median).powi(2) / OF_DIFFERENCES
 }

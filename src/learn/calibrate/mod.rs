@@ -115,10 +115,10 @@ pub fn calibrate(
     torques: Option<&[Vec<f64>]>,
 ) -> Result<Calibrated, Refusal> {
     if model.calibration.is_some() {
-        return Err(Refusal::Again { name: model.name.clone() });
+        return Err(Refusal::Again(model.name.clone()));
     }
     let before = plausibility(model, simulation, &account(model, simulation));
-    let before = before.ok_or_else(|| Refusal::Known { name: model.name.clone() })?;
+    let before = before.ok_or_else(|| Refusal::Known(model.name.clone()))?;
     let spread = Spread::new(model);
     let own = Changes::from_one(model, &Plausible::nominal(model));
     let cycle = Cycle::new(model, simulation)?;
@@ -127,7 +127,7 @@ pub fn calibrate(
     let likely = Fit { model, spread: &spread, along: &rough.along, data: &data }.most_likely();
     let explained = data.explained(&likely.means);
     // The shape of the power identifies the program, its size the robot.
-    if explained < EXPLAINS && data.likeness(&rough.along.means(&own)) < ALIKE {
+    if explained < EXPLAINS && data.correlation(&rough.along.means(&own)) < ALIKE {
         return Err(Refusal::Program { explained, least: EXPLAINS });
     }
     check_size(model, &spread, &rough)?;
@@ -137,7 +137,7 @@ pub fn calibrate(
     }
     // The second pass uses the cycle of a robot that is near the log.
     let near = spread.robot(model, |k| likely.z[k]);
-    let near = drawn(model, &near).map_err(|error| Refusal::Model { reason: error.to_string() })?;
+    let near = drawn(model, &near).map_err(|error| Refusal::Model(error.to_string()))?;
     let cycle = Cycle::new(&near, simulation)?;
     let Folded { aligned, windows, along } = Folded::new(model, &cycle, log, torques)?;
     let data = Data::new(&along, &windows);
@@ -154,7 +154,7 @@ pub fn calibrate(
     let calibrated = centred(model, &spread, &likely.z, &draws)?;
     let simulated = account(&calibrated, simulation);
     let after = plausibility(&calibrated, simulation, &simulated);
-    let after = after.ok_or_else(|| Refusal::Known { name: model.name.clone() })?;
+    let after = after.ok_or_else(|| Refusal::Known(model.name.clone()))?;
     Ok(Calibrated {
         narrowed: narrowed(&spread, &draws),
         model: calibrated,
@@ -192,25 +192,18 @@ fn check_size(
     spread: &Spread,
     Folded { along, windows, .. }: &Folded<'_>,
 ) -> Result<(), Refusal> {
-    let size = |power: &[f64]| {
-        let mean = power.iter().sum::<f64>() / power.len() as f64;
-        let square: f64 = power.iter().map(|w| (w - mean).powi(2)).sum();
-        [mean, (square / power.len() as f64).sqrt()]
-    };
     let robots = spread.draws(model, DRAWS).robots;
     let sizes: Vec<[f64; 2]> = robots
         .par_iter()
-        .map(|robot| size(along.means(&Changes::from_one(model, robot)).power.as_slice()))
+        .map(|robot| mean_and_sd(along.means(&Changes::from_one(model, robot)).power.as_slice()))
         .collect();
-    let measured = size(&windows.power);
+    let measured = mean_and_sd(&windows.power);
     for (i, what) in ["mean power", "swing of the power"].into_iter().enumerate() {
         let logs: Vec<f64> = sizes.iter().map(|size| size[i].max(f64::MIN_POSITIVE).ln()).collect();
-        let mean = logs.iter().sum::<f64>() / logs.len() as f64;
-        let sd = logs.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / logs.len() as f64;
-        let sd = sd.sqrt().max(f64::MIN_POSITIVE);
+        let [mean, sd] = mean_and_sd(&logs);
         let off = (measured[i].ln() - mean).abs();
         // A negative power has no logarithm and is refused, too.
-        if off.is_nan() || off > FAR * sd {
+        if off.is_nan() || off > FAR * sd.max(f64::MIN_POSITIVE) {
             let [low, high] = [-2.0, 2.0].map(|k: f64| (mean + k * sd).exp());
             return Err(Refusal::Robot {
                 name: model.name.clone(),
@@ -222,6 +215,13 @@ fn check_size(
         }
     }
     Ok(())
+}
+
+fn mean_and_sd(values: &[f64]) -> [f64; 2] {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let squares: f64 = values.iter().map(|x| (x - mean).powi(2)).sum();
+    [mean, (squares / count).sqrt()]
 }
 
 /// The most likely robot, and the draws relative to it. The means of the latent parameters do not
@@ -245,7 +245,7 @@ fn centred(
     });
     // The model is read back, because the file rounds its values.
     let read = from_toml("the calibrated robot", &to_toml(&new)).and_then(with_estimates);
-    read.map_err(|error| Refusal::Model { reason: error.to_string() })
+    read.map_err(|error| Refusal::Model(error.to_string()))
 }
 
 /// Draws are rounded to this number of steps per standard deviation.

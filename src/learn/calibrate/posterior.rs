@@ -26,9 +26,9 @@ const WITHIN: f64 = 4.0;
 /// Measured window means with the standard deviations of their noise.
 pub(super) struct Data {
     power: DVector<f64>,
-    power_sd: DVector<f64>,
-    /// Torque of each joint; windows in which it rests have an infinite standard deviation.
-    torque: Vec<(DVector<f64>, DVector<f64>)>,
+    /// Power, then the torque of each joint; windows in which it rests have an infinite standard
+    /// deviation.
+    channels: Vec<(DVector<f64>, DVector<f64>)>,
 }
 
 impl Data {
@@ -41,22 +41,16 @@ impl Data {
             let sd = sd.iter().enumerate().map(moving).collect::<Vec<f64>>();
             (vector(tau), vector(&sd))
         });
-        Data {
-            power: vector(&windows.power),
-            power_sd: vector(&windows.power_sd),
-            torque: torque.collect(),
-        }
+        let power = vector(&windows.power);
+        let of_power = (power.clone(), vector(&windows.power_sd));
+        Data { power, channels: std::iter::once(of_power).chain(torque).collect() }
     }
 
     /// The same data with the variance of the noise multiplied by `factor`.
     pub(super) fn with_noise(&self, factor: f64) -> Data {
         let scale = factor.sqrt();
-        let torque = self.torque.iter().map(|(tau, sd)| (tau.clone(), sd * scale));
-        Data {
-            power: self.power.clone(),
-            power_sd: &self.power_sd * scale,
-            torque: torque.collect(),
-        }
+        let channels = self.channels.iter().map(|(values, sd)| (values.clone(), sd * scale));
+        Data { power: self.power.clone(), channels: channels.collect() }
     }
 
     /// Share of the power's variance that a robot explains.
@@ -67,14 +61,13 @@ impl Data {
     }
 
     /// Correlation of the measured power with that of a robot.
-    pub(super) fn likeness(&self, means: &Means) -> f64 {
+    pub(super) fn correlation(&self, means: &Means) -> f64 {
         correlation(self.power.as_slice(), means.power.as_slice())
     }
 
     /// Which residuals have a finite standard deviation.
     fn counted(&self) -> Vec<bool> {
-        let all = std::iter::once(&self.power_sd).chain(self.torque.iter().map(|(_, sd)| sd));
-        all.flat_map(|sd| sd.iter().map(|sd| sd.is_finite())).collect()
+        self.channels.iter().flat_map(|(_, sd)| sd.iter().map(|sd| sd.is_finite())).collect()
     }
 
     fn count(&self) -> usize {
@@ -83,13 +76,11 @@ impl Data {
 
     /// Residuals over their standard deviations: power, then each torque.
     fn residuals(&self, means: &Means) -> DVector<f64> {
-        let power = (&self.power - &means.power).component_div(&self.power_sd);
-        let torque = self.torque.iter().zip(&means.torque);
-        let torque = torque.flat_map(|((tau, sd), of)| {
-            (tau - of).component_div(sd).iter().copied().collect::<Vec<f64>>()
+        let expected = std::iter::once(&means.power).chain(&means.torque);
+        let all = self.channels.iter().zip(expected).flat_map(|((values, sd), expected)| {
+            (values - expected).component_div(sd).iter().copied().collect::<Vec<f64>>()
         });
-        let all: Vec<f64> = power.iter().copied().chain(torque).collect();
-        DVector::from_vec(all)
+        DVector::from_vec(all.collect())
     }
 }
 
@@ -210,10 +201,9 @@ impl Fit<'_> {
         let mut normal = DMatrix::zeros(count, count);
         let mut gradient = DVector::zeros(count);
         let windows = self.data.power.len();
-        let torque = self.data.torque.iter().map(|(_, sd)| sd);
-        let torque = torque.zip(self.along.torque_slopes(&slopes));
-        let all = std::iter::once((&self.data.power_sd, by_power)).chain(torque);
-        for (part, (sd, mut slope)) in all.enumerate() {
+        let by_channel = std::iter::once(by_power).chain(self.along.torque_slopes(&slopes));
+        let all = self.data.channels.iter().zip(by_channel);
+        for (part, ((_, sd), mut slope)) in all.enumerate() {
             for (mut row, sd) in slope.row_iter_mut().zip(sd.iter()) {
                 row /= *sd;
             }

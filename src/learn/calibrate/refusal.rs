@@ -5,22 +5,16 @@ use thiserror::Error;
 /// Reason to refuse a log for calibration.
 #[derive(Clone, Debug, Error)]
 pub enum Refusal {
-    /// All parameters are known.
+    /// All parameters of this robot are known.
     #[error(
-        "nothing of {name} is estimated: there is nothing to calibrate; run the program with --robot as it is"
+        "nothing of {0} is estimated: there is nothing to calibrate; run the program with --robot as it is"
     )]
-    Known {
-        /// The robot.
-        name: String,
-    },
-    /// The robot is already calibrated.
+    Known(String),
+    /// This robot is already calibrated.
     #[error(
-        "{name} is calibrated already: give the robot that its file was made from, with a log over more cycles"
+        "{0} is calibrated already: give the robot that its file was made from, with a log over more cycles"
     )]
-    Again {
-        /// The robot.
-        name: String,
-    },
+    Again(String),
     /// The simulated cycle has no duration or no end.
     #[error(
         "the simulated cycle takes no time or never ends: there is nothing to compare the log with; see joulepath simulate"
@@ -66,20 +60,12 @@ pub enum Refusal {
         /// Movements of the program.
         simulated: usize,
     },
-    /// The mean power is not positive.
-    #[error("the power is {mean_w:.0} W in the mean: is its sign turned, or is it another column?")]
-    Negative {
-        /// Mean power \[W\].
-        mean_w: f64,
-    },
-    /// The power is constant.
-    #[error(
-        "the power is {power_w:.0} W all the time: it has no cycle; log it while the program runs"
-    )]
-    Constant {
-        /// The power \[W\].
-        power_w: f64,
-    },
+    /// The mean power \[W\] is not positive.
+    #[error("the power is {0:.0} W in the mean: is its sign turned, or is it another column?")]
+    Negative(f64),
+    /// The power is constant \[W\].
+    #[error("the power is {0:.0} W all the time: it has no cycle; log it while the program runs")]
+    Constant(f64),
     /// The power differs between cycles.
     #[error(
         "the power of the cycle at {begin_s:.1} s is {factor:.0} times that of another one: does its unit change within the log?"
@@ -147,10 +133,7 @@ pub enum Refusal {
         /// Number of all draws.
         robots: usize,
     },
-    /// The calibrated model is invalid.
-    #[error("the calibrated robot can't be used: {reason}")]
-    Model {
-        /// The cause.
-        reason: String,
-    },
+    /// The calibrated model is invalid for this reason.
+    #[error("the calibrated robot can't be used: {0}")]
+    Model(String),
 }

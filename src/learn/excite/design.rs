@@ -14,8 +14,8 @@ use crate::arm::dynamics::{
 use crate::arm::kinematics::{Body, Obstacle};
 use crate::arm::robot::Model;
 
-use super::error::ExciteError;
-use super::feasible::{Checked, Shares, check};
+use super::error::{ExciteError, rate_limits};
+use super::feasible::{Checked, Ratios, check};
 use super::information::{Information, Normal, information, log_det};
 use super::plateaus::pose;
 use super::search::maximise;
@@ -101,7 +101,8 @@ struct Problem<'a> {
     model: &'a Model,
     settings: &'a Design,
     base: BaseParameters,
-    shares: Shares,
+    /// Largest allowed ratios to the limits.
+    shares: Ratios,
     velocity: &'a [f64],
     acceleration: &'a [f64],
     states: usize,
@@ -126,7 +127,7 @@ pub fn design(
         .map(|x| {
             let mut work = Work::new(&problem);
             let x = problem.shrunk(&mut work, x);
-            (problem.value(&mut work, &x, PENALTIES[1]), x)
+            (problem.value(&mut work, &x, PENALTIES[1], false), x)
         })
         .collect();
     rated.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -141,13 +142,13 @@ pub fn design(
                 progress(count.min(STARTS * ROUNDS), STARTS * ROUNDS);
             };
             let [first, heavier @ ..] = PENALTIES;
-            let mut value = |x: &DVector<f64>| problem.value(&mut work, x, first);
+            let mut value = |x: &DVector<f64>| problem.value(&mut work, x, first, false);
             let (mut found, _) = maximise(start.clone(), ROUNDS, &mut value, &step);
             for weight in heavier {
                 if problem.excess(&mut work, &found) == 0.0 {
                     break;
                 }
-                let mut value = |x: &DVector<f64>| problem.strict_value(&mut work, x, weight);
+                let mut value = |x: &DVector<f64>| problem.value(&mut work, x, weight, true);
                 found = maximise(found, ROUNDS / 2, &mut value, &|| ()).0;
             }
             found
@@ -209,11 +210,7 @@ impl<'a> Work<'a> {
 
 impl<'a> Problem<'a> {
     fn new(model: &'a Model, settings: &'a Design) -> Result<Problem<'a>, ExciteError> {
-        let lacks = |what| ExciteError::Lacks { name: model.name.clone(), what };
-        let limits = &model.limits;
-        let velocity = limits.velocity.as_ref().ok_or_else(|| lacks("joint speeds"))?;
-        let acceleration =
-            limits.acceleration.as_ref().ok_or_else(|| lacks("joint accelerations"))?;
+        let [velocity, acceleration] = rate_limits(model)?;
         let n = model.dof;
         let base = match settings.focus {
             Focus::All => base_parameters(model),
@@ -234,7 +231,7 @@ impl<'a> Problem<'a> {
             }
         };
         let fastest = settings.harmonics.iter().copied().max().unwrap_or(1);
-        let shares = Shares {
+        let shares = Ratios {
             position: USED[0],
             velocity: settings.speed_share,
             acceleration: USED[1],
@@ -322,16 +319,12 @@ impl<'a> Problem<'a> {
         checked.excess(&self.shares)
     }
 
-    /// Objective: log det, less penalties of poor condition and of limit violations at the states.
-    fn value(&self, work: &mut Work<'_>, x: &DVector<f64>, penalty: f64) -> f64 {
+    /// Objective: log det, less penalties of poor condition and of limit violations at the states;
+    /// `strict` includes violations between the states.
+    fn value(&self, work: &mut Work<'_>, x: &DVector<f64>, penalty: f64, strict: bool) -> f64 {
         let states = self.series(x).sampled(self.states);
-        told(work, x, &states) - penalty * self.excess_of(work, &states)
-    }
-
-    /// The objective with limit violations between the states.
-    fn strict_value(&self, work: &mut Work<'_>, x: &DVector<f64>, penalty: f64) -> f64 {
-        let states = self.series(x).sampled(self.states);
-        told(work, x, &states) - penalty * self.excess(work, x)
+        let excess = if strict { self.excess(work, x) } else { self.excess_of(work, &states) };
+        told(work, x, &states) - penalty * excess
     }
 
     /// A motion of the same shape, reduced until it keeps all limits, if possible.

@@ -2,22 +2,9 @@
 
 use crate::arm::dynamics::{Data, Load, torque};
 use crate::arm::kinematics::Body;
-use crate::arm::robot::{MAX_DOF, Model};
+use crate::arm::robot::Model;
 
 use super::series::State;
-
-/// The share of each limit that a motion may use.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shares {
-    /// Share of a joint's range.
-    pub position: f64,
-    /// Share of its speed.
-    pub velocity: f64,
-    /// Share of its acceleration.
-    pub acceleration: f64,
-    /// Share of its torque.
-    pub torque: f64,
-}
 
 /// Largest ratios of a motion's values to the limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -44,15 +31,16 @@ pub struct Checked {
 }
 
 impl Checked {
-    /// Sum of the limit violations, as shares of the limits and lengths; 0 if all limits hold.
+    /// Sum of the violations of limits with the largest allowed ratios `allowed`, as shares of the
+    /// limits and lengths; 0 if all limits hold.
     #[must_use]
-    pub fn excess(&self, shares: &Shares) -> f64 {
+    pub fn excess(&self, allowed: &Ratios) -> f64 {
         let over = |ratio: f64, share: f64| (ratio / share - 1.0).max(0.0);
         let r = &self.ratios;
-        over(r.position, shares.position)
-            + over(r.velocity, shares.velocity)
-            + over(r.acceleration, shares.acceleration)
-            + over(r.torque, shares.torque)
+        over(r.position, allowed.position)
+            + over(r.velocity, allowed.velocity)
+            + over(r.acceleration, allowed.acceleration)
+            + over(r.torque, allowed.torque)
             + (-self.to_obstacles).max(0.0)
             + (-self.to_itself).max(0.0)
     }
@@ -84,10 +72,9 @@ pub fn check(model: &Model, body: &Body<'_>, load: &Load, states: &[State]) -> C
         }
         if let Some(largest) = torques {
             let parts = torque(model, &mut data, load, &q[..n], &qd[..n], &qdd[..n]);
-            let mut tau = [0.0; MAX_DOF];
             for joint in 0..n {
-                tau[joint] = parts.rigid[joint] + parts.friction[joint];
-                ratios.torque = ratios.torque.max(tau[joint].abs() / largest[joint]);
+                let tau = parts.rigid[joint] + parts.friction[joint];
+                ratios.torque = ratios.torque.max(tau.abs() / largest[joint]);
             }
         }
         let [to_obstacles, to_itself] = body.margins(&q[..n]);

@@ -3,7 +3,7 @@
 use crate::arm::kinematics::Body;
 use crate::arm::robot::{MAX_DOF, Model};
 
-use super::error::ExciteError;
+use super::error::{ExciteError, rate_limits};
 use super::series::State;
 
 /// Number of speeds for each joint, equally spaced in their logarithm.
@@ -132,9 +132,7 @@ fn plateaus(
     sets: &[Vec<f64>],
 ) -> Result<Plateaus, ExciteError> {
     let limits = &model.limits;
-    let lacks = |what| ExciteError::Lacks { name: model.name.clone(), what };
-    let velocity = limits.velocity.as_ref().ok_or_else(|| lacks("joint speeds"))?;
-    let acceleration = limits.acceleration.as_ref().ok_or_else(|| lacks("joint accelerations"))?;
+    let [velocity, acceleration] = rate_limits(model)?;
     let start = pose(model, body)?;
     let mut moves = Vec::new();
     for direction in sets {

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::error::ExciteError;
+use super::error::{ExciteError, rate_limits};
 use super::feasible::check;
 use super::series::State;
 use crate::arm::dynamics::Load;
@@ -48,13 +48,7 @@ pub fn stream_tests(
     body: &Body<'_>,
     start: &Joints,
 ) -> Result<Vec<StreamTest>, ExciteError> {
-    let lacks = |what| ExciteError::Lacks { name: model.name.clone(), what };
-    if model.limits.velocity.is_none() {
-        return Err(lacks("velocity"));
-    }
-    if model.limits.acceleration.is_none() {
-        return Err(lacks("acceleration"));
-    }
+    rate_limits(model)?;
     patterns().iter().map(|pattern| sized(model, body, start, pattern)).collect()
 }
 

@@ -1,6 +1,6 @@
 //! Removal of implausible rows.
 
-use crate::learn::log::{Channel, Log, Rejected};
+use crate::learn::log::{Channel, Log, Rejected, quantile};
 
 /// Bounds on angle, rate, acceleration, torque and current of any robot, in SI units.
 const LARGEST: [f64; 5] = [1e3, 1e3, 1e5, 1e6, 1e4];
@@ -59,9 +59,7 @@ pub fn cleaned(log: &Log) -> (Log, Vec<Rejected>) {
 /// Marks single angles far from their neighbours.
 fn spikes(q: &[f64], good: &[usize], joint: usize, why: &mut [Option<String>]) {
     let off = |w: &[usize]| (q[w[1]] - 0.5 * (q[w[0]] + q[w[2]])).abs();
-    let mut all: Vec<f64> = good.windows(3).map(off).collect();
-    all.sort_by(f64::total_cmp);
-    let usual = all.get(all.len() / 2).copied().unwrap_or(0.0);
+    let usual = quantile(good.windows(3).map(off), 0.5);
     for w in good.windows(3) {
         let here = off(w);
         // The neighbours of a spike deviate by half of it.
@@ -74,9 +72,7 @@ fn spikes(q: &[f64], good: &[usize], joint: usize, why: &mut [Option<String>]) {
 }
 
 fn torques(tau: &[f64], good: &[usize], joint: usize, why: &mut [Option<String>]) {
-    let mut sizes: Vec<f64> = good.iter().map(|i| tau[*i].abs()).collect();
-    sizes.sort_by(f64::total_cmp);
-    let usual = sizes.get((USUAL * sizes.len() as f64) as usize).copied().unwrap_or(0.0);
+    let usual = quantile(good.iter().map(|i| tau[*i].abs()), USUAL);
     for i in good {
         let value = tau[*i];
         if usual > 0.0 && value.abs() > TORQUE * usual && why[*i].is_none() {

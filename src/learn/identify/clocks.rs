@@ -139,21 +139,13 @@ fn shifted(log: &Log, shift: &dyn Fn(f64) -> f64) -> Log {
     let [first, last] = [t.first(), t.last()].map(|t| t.copied().unwrap_or_default());
     let kept: Vec<usize> =
         (0..t.len()).filter(|i| (first..=last).contains(&(t[*i] + shift(t[*i])))).collect();
-    let values = log.channels.iter().zip(&log.values).map(|(channel, x)| {
-        let moves = matches!(
-            channel,
-            Channel::Position(_) | Channel::Velocity(_) | Channel::Acceleration(_)
-        );
-        let at = |i: &usize| if moves { between(t, x, t[*i] + shift(t[*i]), *i) } else { x[*i] };
-        kept.iter().map(at).collect()
-    });
-    Log {
-        channels: log.channels.clone(),
-        values: values.collect(),
-        rows: kept.iter().map(|i| log.rows[*i]).collect(),
-        rejected: log.rejected.clone(),
-        degrees: log.degrees.clone(),
+    let mut shifted = log.of_rows(&kept);
+    for ((channel, x), moved) in log.channels.iter().zip(&log.values).zip(&mut shifted.values) {
+        if channel.is_motion() {
+            *moved = kept.iter().map(|i| between(t, x, t[*i] + shift(t[*i]), *i)).collect();
+        }
     }
+    shifted
 }
 
 /// The value of `x` at a time near row `from`, by linear interpolation.

@@ -49,7 +49,7 @@ pub(crate) enum Piece {
 }
 
 impl Piece {
-    pub(super) fn width(&self) -> usize {
+    fn width(&self) -> usize {
         match self {
             Piece::Body(_) => RIGID,
             Piece::Positive(_) | Piece::Any(_) => 1,
@@ -99,15 +99,22 @@ pub(crate) fn consistent(pieces: &[Piece], target: &Target<'_>) -> Option<DVecto
 }
 
 fn start(pieces: &[Piece]) -> DVector<f64> {
-    let mut values = Vec::new();
-    for piece in pieces {
-        match piece {
-            Piece::Body(prior) => values.extend(body_parameters(prior)),
-            Piece::Positive(prior) => values.push(*prior),
-            Piece::Any(_) => values.push(0.0),
-        }
-    }
-    DVector::from_vec(values)
+    let values = pieces.iter().flat_map(|piece| match piece {
+        Piece::Body(prior) => body_parameters(prior).to_vec(),
+        Piece::Positive(prior) => vec![*prior],
+        Piece::Any(_) => vec![0.0],
+    });
+    DVector::from_vec(values.collect())
+}
+
+/// The pieces, each with the place of its first parameter.
+pub(super) fn placed(pieces: &[Piece]) -> impl Iterator<Item = (usize, &Piece)> {
+    let mut next = 0;
+    pieces.iter().map(move |piece| {
+        let at = next;
+        next += piece.width();
+        (at, piece)
+    })
 }
 
 struct Problem<'a> {
@@ -121,15 +128,15 @@ impl Problem<'_> {
     /// The value of the objective; `None` outside its domain.
     fn value(&self, point: &DVector<f64>) -> Option<f64> {
         let mut sum = 0.0;
-        let mut at = 0;
-        for piece in self.pieces {
+        for (at, piece) in placed(self.pieces) {
             match piece {
                 Piece::Body(prior) => {
                     let p = pseudo_inertia(&point.as_slice()[at..at + RIGID]);
                     let inverse = prior.cholesky()?.inverse();
-                    let factor = p.cholesky()?;
-                    let log = 2.0 * factor.l().diagonal().map(f64::ln).sum();
-                    let log_prior = 2.0 * prior.cholesky()?.l().diagonal().map(f64::ln).sum();
+                    let log_det = |m: &Matrix4<f64>| -> Option<f64> {
+                        Some(2.0 * m.cholesky()?.l().diagonal().map(f64::ln).sum())
+                    };
+                    let (log, log_prior) = (log_det(&p)?, log_det(prior)?);
                     sum += (inverse * p).trace() - (log - log_prior) - 4.0;
                 }
                 Piece::Positive(prior) => {
@@ -141,7 +148,6 @@ impl Problem<'_> {
                 }
                 Piece::Any(size) => sum += 0.5 * (point[at] / size).powi(2),
             }
-            at += piece.width();
         }
         let value = 0.5 * (self.through * point - self.goal).norm_squared() + self.weight * sum;
         value.is_finite().then_some(value)
@@ -150,8 +156,7 @@ impl Problem<'_> {
     fn slope(&self, point: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
         let mut gradient = self.through.tr_mul(&(self.through * point - self.goal));
         let mut hessian = self.through.tr_mul(self.through);
-        let mut at = 0;
-        for piece in self.pieces {
+        for (at, piece) in placed(self.pieces) {
             match piece {
                 Piece::Body(prior) => {
                     let p = pseudo_inertia(&point.as_slice()[at..at + RIGID]);
@@ -177,7 +182,6 @@ impl Problem<'_> {
                     hessian[(at, at)] += self.weight / (size * size);
                 }
             }
-            at += piece.width();
         }
         (gradient, hessian)
     }

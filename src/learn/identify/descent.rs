@@ -15,9 +15,9 @@ use nalgebra::{DMatrix, DVector, Vector3};
 use crate::arm::dynamics::{JOINT, Load, RIGID, link_parameters, parameters};
 use crate::arm::robot::{Link, Model};
 
-use super::fit::root_mean;
 use super::guess::first_guess;
 use super::identified::Identified;
+use super::misses::root_mean;
 
 /// Parameters of a link: mass, centre of mass, moments of inertia about it.
 const LINK: usize = 7;

@@ -5,6 +5,8 @@
 //! filter (M. Gautier, "Dynamic identification of robots with power model", ICRA 1997: parallel
 //! filtering) and are decimated to the remaining bandwidth.
 
+use std::ops::Range;
+
 use crate::arm::dynamics::{
     BaseParameters, Data, JOINT, Load, RIGID, Regressor, motor_rates, regressor, rnea, torque,
 };
@@ -30,6 +32,17 @@ impl Layout {
     pub fn width(&self) -> usize {
         self.columns.iter().map(Vec::len).sum()
     }
+
+    /// For each joint, its number, its columns, and the place of its coefficients among those of
+    /// all joints.
+    pub fn joints(&self) -> impl Iterator<Item = (usize, &[usize], Range<usize>)> {
+        let mut from = 0;
+        self.columns.iter().enumerate().map(move |(joint, columns)| {
+            let place = from..from + columns.len();
+            from = place.end;
+            (joint, columns.as_slice(), place)
+        })
+    }
 }
 
 /// The equations of all joints at one instant.
@@ -50,6 +63,14 @@ pub struct Instant<'a> {
     pub tau: &'a [f64],
     /// Whether the equation of each joint is usable: the joint moves and its torque is not clipped.
     pub usable: [bool; MAX_DOF],
+}
+
+impl Instant<'_> {
+    /// The torque of the parameters `beta` in the equation of a joint with these columns \[Nm\].
+    #[must_use]
+    pub fn predicted(&self, columns: &[usize], place: Range<usize>, beta: &[f64]) -> f64 {
+        self.x[place].iter().zip(columns).map(|(x, column)| x * beta[*column]).sum()
+    }
 }
 
 /// The equations of motion of a robot, linear in its base parameters.

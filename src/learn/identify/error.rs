@@ -5,20 +5,12 @@ use thiserror::Error;
 /// Error of an identification.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum IdentifyError {
-    /// The log is too short for the filter.
-    #[error("the log has no piece of {seconds:.2} s without a gap: record longer")]
-    Short {
-        /// Required duration \[s\].
-        seconds: f64,
-    },
-    /// No joint moves.
-    #[error(
-        "no joint moves by {range} rad or more: record a motion, such as that of joulepath excite"
-    )]
-    Still {
-        /// Least range of a joint that moves \[rad\].
-        range: f64,
-    },
+    /// The log is too short for the filter: required duration \[s\].
+    #[error("the log has no piece of {0:.2} s without a gap: record longer")]
+    Short(f64),
+    /// No joint moves by this range \[rad\].
+    #[error("no joint moves by {0} rad or more: record a motion, such as that of joulepath excite")]
+    Still(f64),
     /// Fewer equations than unknowns.
     #[error(
         "{equations} usable equations for {unknowns} parameters: record longer, or free fewer with --free"
@@ -53,14 +45,11 @@ pub enum IdentifyError {
         /// Joints of the robot.
         dof: usize,
     },
-    /// The fixed parameters are unknown.
+    /// The fixed parameters of this robot are unknown.
     #[error(
-        "{name} has no dynamics to start from: give its links, [[link]], in a robot file, or identify all with --free all"
+        "{0} has no dynamics to start from: give its links, [[link]], in a robot file, or identify all with --free all"
     )]
-    NoDynamics {
-        /// The robot.
-        name: String,
-    },
+    NoDynamics(String),
     /// No physically consistent model exists.
     #[error(
         "no physically consistent model was found: the links of the robot file are no bodies, leave them out"
@@ -78,14 +67,11 @@ pub enum IdentifyError {
         /// Large quantile of its rate.
         fast: f64,
     },
-    /// Columns declared in degrees are in radians.
+    /// Columns declared in degrees are in radians: largest travel, in the unit of its column.
     #[error(
-        "the columns q1_deg… change by {reach:.2} at most, which as degrees is hardly a motion: they seem to be in radians; name them q1…"
+        "the columns q1_deg… change by {0:.2} at most, which as degrees is hardly a motion: they seem to be in radians; name them q1…"
     )]
-    Radians {
-        /// Travel of the joint that moves most, in the unit of its column.
-        reach: f64,
-    },
+    Radians(f64),
     /// Rates that do not correlate with the positions.
     #[error(
         "qd{joint} has little to do with the motion of q{joint} ({:.0} % of it): is it another joint's? map the right column, or leave it out and it is differentiated",
@@ -100,7 +86,7 @@ pub enum IdentifyError {
     /// Rates that differ from those of the positions by a factor.
     #[error(
         "qd{joint} is {factor:.3} times the rate of q{joint}{}",
-        rates_hint(*factor, *joint)
+        factor_hint("qd", *factor, *joint)
     )]
     Rates {
         /// Joint number, from 1.
@@ -111,7 +97,7 @@ pub enum IdentifyError {
     /// Accelerations that differ from those of the rates by a factor.
     #[error(
         "qdd{joint} is {factor:.3} times the change of qd{joint}{}",
-        accelerations_hint(*factor, *joint)
+        factor_hint("qdd", *factor, *joint)
     )]
     Accelerations {
         /// Joint number, from 1.
@@ -119,22 +105,16 @@ pub enum IdentifyError {
         /// Logged over differentiated acceleration.
         factor: f64,
     },
-    /// Rows too far apart for differentiation.
+    /// Rows too far apart for differentiation: median interval \[s\].
     #[error(
-        "rows are {step} s apart, too far to tell rates from positions: t has to be in seconds (is it in ms?), or log qd1… and qdd1…"
+        "rows are {0} s apart, too far to tell rates from positions: t has to be in seconds (is it in ms?), or log qd1… and qdd1…"
     )]
-    Slow {
-        /// Median interval \[s\].
-        step: f64,
-    },
-    /// A constant torque.
+    Slow(f64),
+    /// A constant torque of this joint, from 1.
     #[error(
-        "tau{joint} never changes while joint {joint} moves: it was not recorded; record it, or map another column"
+        "tau{0} never changes while joint {0} moves: it was not recorded; record it, or map another column"
     )]
-    Dead {
-        /// Joint number, from 1.
-        joint: usize,
-    },
+    Dead(usize),
     /// Torques far above the limits.
     #[error(
         "tau{joint} is mostly {reach:.0} Nm, the limit of the joint is {limit:.0} Nm: torques have to be in Nm at the joint (are they in mNm?)"
@@ -183,30 +163,21 @@ pub enum IdentifyError {
         /// Number of the robot's joints.
         joints: usize,
     },
-    /// Neither torques nor currents.
+    /// Neither torques nor currents for this number of joints.
     #[error(
-        "the log has no torques: give tau1…tau{joints} (Nm, at the joint), i1… (A rms, motor) or ia1,ib1,ic1… (A)"
+        "the log has no torques: give tau1…tau{0} (Nm, at the joint), i1… (A rms, motor) or ia1,ib1,ic1… (A)"
     )]
-    NoTorque {
-        /// Number of the robot's joints.
-        joints: usize,
-    },
-    /// Currents without torque constants.
+    NoTorque(usize),
+    /// Currents of a robot without torque constants.
     #[error(
-        "{name} has no torque constants: give motors.torque_constant and motors.ratio in the robot file, or log torques"
+        "{0} has no torque constants: give motors.torque_constant and motors.ratio in the robot file, or log torques"
     )]
-    NoConstants {
-        /// The robot.
-        name: String,
-    },
-    /// The sign of a current amplitude is unknown.
+    NoConstants(String),
+    /// The sign of the current amplitude of this joint, from 1, is unknown.
     #[error(
-        "nothing tells the sign of the current of joint {joint}: its phases do not turn with the motor (gear ratio?) and the model has no dynamics to compare with"
+        "nothing tells the sign of the current of joint {0}: its phases do not turn with the motor (gear ratio?) and the model has no dynamics to compare with"
     )]
-    Sign {
-        /// Joint number, from 1.
-        joint: usize,
-    },
+    Sign(usize),
 }
 
 /// Whether a factor is near another one.
@@ -214,29 +185,19 @@ fn near(factor: f64, other: f64) -> bool {
     factor > 0.0 && (factor / other).ln().abs() < 0.2
 }
 
-/// Probable cause of a factor between rates.
-fn rates_hint(factor: f64, joint: usize) -> String {
+/// Probable cause of a factor between the rates (`qd`) or accelerations (`qdd`) of a column and its
+/// differentiated ones.
+fn factor_hint(column: &str, factor: f64, joint: usize) -> String {
     let degrees = 180.0 / std::f64::consts::PI;
+    let are_rates = column == "qd";
     if near(factor, degrees) {
-        format!(": it seems to be in degrees; name the column qd{joint}_deg")
-    } else if near(factor, 1.0 / degrees) {
+        format!(": it seems to be in degrees; name the column {column}{joint}_deg")
+    } else if are_rates && near(factor, 1.0 / degrees) {
         format!(": the positions seem to be in degrees; name the column q{joint}_deg")
-    } else if near(factor, 1e3) || near(factor, 1e6) || near(factor, 1e9) {
+    } else if are_rates && [1e3, 1e6, 1e9].iter().any(|other| near(factor, *other)) {
         format!(": the time seems to be in {}; give t in s", below_a_second(factor))
     } else if factor < 0.0 {
-        ": it has the other sense; turn it, or leave the column out".into()
-    } else {
-        ": its unit can't be right; leave the column out and it is differentiated".into()
-    }
-}
-
-/// Probable cause of a factor between accelerations.
-fn accelerations_hint(factor: f64, joint: usize) -> String {
-    let degrees = 180.0 / std::f64::consts::PI;
-    if near(factor, degrees) {
-        format!(": it seems to be in degrees; name the column qdd{joint}_deg")
-    } else if factor < 0.0 {
-        ": it has the other sense; turn it, or leave the column out".into()
+        ": it has the opposite sign; multiply it by -1, or leave the column out".into()
     } else {
         ": its unit can't be right; leave the column out and it is differentiated".into()
     }

@@ -33,14 +33,9 @@ impl Factors {
         equations.each(samples, &layout, &mut |instant| {
             let share = if duration > 0.0 { (instant.t - first) / duration } else { 0.0 };
             let part = ((share * parts as f64) as usize).min(parts - 1);
-            let mut from = 0;
-            for (joint, columns) in layout.columns.iter().enumerate() {
-                let to = from + columns.len();
-                if instant.usable[joint] {
-                    triangles[part][joint].push(&instant.x[from..to], instant.y[joint]);
-                    squares[part][joint] += instant.tau[joint] * instant.tau[joint];
-                }
-                from = to;
+            for (joint, _, place) in layout.joints().filter(|(joint, ..)| instant.usable[*joint]) {
+                triangles[part][joint].push(&instant.x[place], instant.y[joint]);
+                squares[part][joint] += instant.tau[joint] * instant.tau[joint];
             }
         });
         let rows = triangles.iter().map(|of| of.iter().map(Triangle::rows).collect()).collect();

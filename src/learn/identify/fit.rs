@@ -6,6 +6,7 @@ use super::equations::Equations;
 use super::error::IdentifyError;
 use super::factors::Factors;
 use super::least_squares::{Condition, Solution, solve};
+use super::misses::{Misses, root_mean};
 use super::noise::{Residual, autocovariance};
 use super::repetitions::{self, Fold};
 use super::samples::Samples;
@@ -61,38 +62,29 @@ pub struct Fit {
     pub whiteness: Vec<Option<Whiteness>>,
     /// The equations.
     pub factors: Factors,
-    /// The folds of cross-validation.
-    pub(super) held_out: HeldOut,
+    /// The folds of cross-validation: groups of repetitions; `None`: parts of the time.
+    pub(super) folds: Option<Vec<Fold>>,
 }
 
-/// The folds of cross-validation.
-#[derive(Clone, Debug)]
-pub(super) struct HeldOut {
-    /// Groups of repetitions; `None`: parts of the time.
-    folds: Option<Vec<Fold>>,
-}
-
-impl HeldOut {
-    /// Root mean square of each joint's held-out residuals \[Nm\]; `found` gives the parameters for
-    /// the equations of the other parts, `factors` are those of all parts.
-    pub(super) fn rms(
-        &self,
-        factors: &Factors,
-        found: &dyn Fn(&Factors) -> DVector<f64>,
-    ) -> Vec<f64> {
-        let joints = factors.layout.columns.len();
-        if let Some(folds) = &self.folds {
-            let (squares, rows) = repetitions::cross_squares(folds, joints, found);
-            return root_mean(&squares, &rows);
-        }
-        let mut sums = vec![0.0; joints];
-        for part in 0..factors.parts.len() {
-            let beta = found(&factors.merged(Some(part)));
-            let squares = factors.residual_squares(&beta, Some(part));
-            sums.iter_mut().zip(squares).for_each(|(sum, of)| *sum += of);
-        }
-        root_mean(&sums, &factors.rows_without(None))
+/// Root mean square of each joint's held-out residuals \[Nm\]; `found` gives the parameters for the
+/// equations of the other parts, `factors` are those of all parts.
+pub(super) fn held_out_rms(
+    folds: Option<&[Fold]>,
+    factors: &Factors,
+    found: &dyn Fn(&Factors) -> DVector<f64>,
+) -> Vec<f64> {
+    let joints = factors.layout.columns.len();
+    if let Some(folds) = folds {
+        let (squares, rows) = repetitions::cross_squares(folds, joints, found);
+        return root_mean(&squares, &rows);
     }
+    let mut sums = vec![0.0; joints];
+    for part in 0..factors.parts.len() {
+        let beta = found(&factors.merged(Some(part)));
+        let squares = factors.residual_squares(&beta, Some(part));
+        sums.iter_mut().zip(squares).for_each(|(sum, of)| *sum += of);
+    }
+    root_mean(&sums, &factors.rows_without(None))
 }
 
 /// Fits the base parameters of `equations` to `samples`.
@@ -113,24 +105,20 @@ pub fn fit(
         return Err(IdentifyError::TooFew { equations: count, unknowns });
     }
     let merged = factors.merged(None);
-    let (solution, sigma) = reweighted(&merged, weighting, unknowns);
-    let squares = factors.residual_squares(&solution.beta, None);
-    let torque: Vec<f64> =
-        (0..rows.len()).map(|joint| factors.squares.iter().map(|part| part[joint]).sum()).collect();
+    let (solution, weights) = reweighted(&merged, weighting, unknowns);
+    let Misses { rms, relative } = Misses::new(&solution.beta, std::slice::from_ref(&factors));
     let folds = repetitions::folds(equations, samples);
-    let over_repetitions = folds.is_some();
-    let held_out = HeldOut { folds };
-    let cross_rms = held_out.rms(&factors, &|part| reweighted(part, weighting, unknowns).0.beta);
-    let weights: Vec<f64> = sigma.iter().map(|sigma| 1.0 / sigma).collect();
+    let free = |part: &Factors| reweighted(part, weighting, unknowns).0.beta;
+    let cross_rms = held_out_rms(folds.as_deref(), &factors, &free);
     let Errors { covariance, memory, whiteness } =
         errors(equations, samples, &merged, &solution, &weights, weighting);
     Ok(Fit {
         condition: solution.condition(),
-        rms: root_mean(&squares, &rows),
-        relative_rms: squares.iter().zip(&torque).map(|(e, t)| (e / t).sqrt()).collect(),
+        rms,
+        relative_rms: relative,
         cross_rms,
-        over_repetitions,
-        held_out,
+        over_repetitions: folds.is_some(),
+        folds,
         covariance,
         memory,
         whiteness,
@@ -146,13 +134,7 @@ pub(super) fn without_errors(factors: &Factors, unknowns: usize) -> Vec<f64> {
     root_mean(&factors.residual_squares(&solution.beta, None), &factors.rows_without(None))
 }
 
-/// Root mean squares; NaN without rows.
-#[must_use]
-pub(super) fn root_mean(squares: &[f64], rows: &[usize]) -> Vec<f64> {
-    squares.iter().zip(rows).map(|(sum, n)| (sum / *n as f64).sqrt()).collect()
-}
-
-/// The solution, and the standard deviation of each joint's residuals \[Nm\].
+/// The solution, and the weight of each joint: the inverse standard deviation of its residuals.
 pub(super) fn reweighted(
     factors: &Factors,
     weighting: Weighting,
@@ -160,12 +142,12 @@ pub(super) fn reweighted(
 ) -> (Solution, Vec<f64>) {
     let rows = factors.rows_without(None);
     let mut sigma = vec![1.0; rows.len()];
-    let mut solution = solve(&factors.stacked(&sigma, unknowns));
+    let mut weights = sigma.clone();
+    let mut solution = solve(&factors.stacked(&weights, unknowns));
     if weighting == Weighting::Ordinary {
-        return (solution, sigma);
+        return (solution, weights);
     }
     for _ in 0..ROUNDS {
-        let weights: Vec<f64> = sigma.iter().map(|sigma| 1.0 / sigma).collect();
         let squares = factors.residual_squares(&solution.beta, None);
         let lost = lost(factors, &solution, &weights);
         let next: Vec<f64> = (0..rows.len())
@@ -179,13 +161,13 @@ pub(super) fn reweighted(
             .collect();
         let change = next.iter().zip(&sigma).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max);
         sigma = next;
-        let weights: Vec<f64> = sigma.iter().map(|sigma| 1.0 / sigma).collect();
+        weights = sigma.iter().map(|sigma| 1.0 / sigma).collect();
         solution = solve(&factors.stacked(&weights, unknowns));
         if change < SETTLED {
             break;
         }
     }
-    (solution, sigma)
+    (solution, weights)
 }
 
 /// Degrees of freedom that the fit uses of each joint's equations.
@@ -242,16 +224,9 @@ fn errors(
     let mut instants = 0;
     equations.each(samples, layout, &mut |instant| {
         instants += 1;
-        let mut from = 0;
-        for (joint, columns) in layout.columns.iter().enumerate() {
-            let to = from + columns.len();
-            if instant.usable[joint] {
-                let of = instant.x[from..to].iter().zip(columns);
-                let predicted: f64 = of.map(|(x, column)| x * solution.beta[*column]).sum();
-                let residual = instant.y[joint] - predicted;
-                residuals[joint].push((instant.block, instant.index, residual));
-            }
-            from = to;
+        for (joint, columns, place) in layout.joints().filter(|(j, ..)| instant.usable[*j]) {
+            let predicted = instant.predicted(columns, place, solution.beta.as_slice());
+            residuals[joint].push((instant.block, instant.index, instant.y[joint] - predicted));
         }
     });
     let lost = lost(factors, solution, weights);
@@ -322,16 +297,13 @@ fn between(
         }
         block = instant.block;
         if number % period < piece {
-            let mut from = 0;
-            for (joint, columns) in layout.columns.iter().enumerate() {
-                let to = from + columns.len();
+            for (joint, columns, place) in layout.joints() {
                 if instant.usable[joint] {
-                    rows.extend(&instant.x[from..to]);
+                    rows.extend(&instant.x[place]);
                     used[joint] += 1;
                 } else {
                     rows.resize(rows.len() + columns.len(), 0.0);
                 }
-                from = to;
             }
         }
         number += 1;
@@ -352,9 +324,8 @@ fn add_piece(
     noise: &Noise<'_>,
 ) {
     let count = rows.len() / width;
-    let mut from = 0;
-    for (joint, columns) in factors.layout.columns.iter().enumerate() {
-        let x = DMatrix::from_fn(count, columns.len(), |i, k| rows[i * width + from + k]);
+    for (joint, columns, place) in factors.layout.joints() {
+        let x = DMatrix::from_fn(count, columns.len(), |i, k| rows[i * width + place.start + k]);
         let mut coloured = DMatrix::zeros(count, columns.len());
         for k in 0..columns.len() {
             let column = x.column(k);
@@ -374,6 +345,5 @@ fn add_piece(
                 middle[(*to, *other)] += product[(a, b)];
             }
         }
-        from += columns.len();
     }
 }

@@ -63,19 +63,14 @@ impl Identified {
         let layout = equations.layout();
         let mut rows = Vec::new();
         equations.each(samples, &layout, &mut |instant| {
-            let n = layout.columns.len();
-            let mut parts = [Vec::with_capacity(n), Vec::with_capacity(n), Vec::with_capacity(n)];
-            let mut from = 0;
-            for (joint, columns) in layout.columns.iter().enumerate() {
-                let to = from + columns.len();
-                let of = instant.x[from..to].iter().zip(columns);
-                let free: f64 = of.map(|(x, column)| x * beta[*column]).sum();
+            let mut parts: [Vec<f64>; 3] = Default::default();
+            for (joint, columns, place) in layout.joints() {
+                let free = instant.predicted(columns, place, &beta);
                 let predicted = free + instant.tau[joint] - instant.y[joint];
                 let shown = |value: f64| if instant.usable[joint] { value } else { f64::NAN };
                 parts[0].push(shown(instant.tau[joint]));
                 parts[1].push(shown(predicted));
                 parts[2].push(instant.qd[joint]);
-                from = to;
             }
             rows.push((instant.t, parts));
         });

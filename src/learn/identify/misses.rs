@@ -3,7 +3,12 @@
 use nalgebra::DVector;
 
 use super::factors::Factors;
-use super::fit::root_mean;
+
+/// Root mean squares; NaN without rows.
+#[must_use]
+pub(super) fn root_mean(squares: &[f64], rows: &[usize]) -> Vec<f64> {
+    squares.iter().zip(rows).map(|(sum, n)| (sum / *n as f64).sqrt()).collect()
+}
 
 /// Residuals by joint.
 #[derive(Clone, Debug, PartialEq)]

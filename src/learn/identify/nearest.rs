@@ -7,7 +7,7 @@ use crate::arm::dynamics::{
 };
 use crate::arm::robot::Model;
 
-use super::consistent::{Piece, Target, consistent};
+use super::consistent::{Piece, Target, consistent, placed};
 use super::factors::Factors;
 use super::fit::Fit;
 use super::guess::{prior, small_body};
@@ -94,19 +94,13 @@ impl Nearest<'_> {
         let mut pieces = pieces.clone();
         let mut missed = target.squares(&found);
         for _ in 0..FREED {
-            let mut freed = pieces.clone();
-            let mut at = 0;
-            for piece in &mut freed {
-                let index = among[at];
-                let width = piece.width();
-                if let Piece::Positive(prior) = piece
-                    && free(index)
-                    && found[at] < BOUND * *prior
-                {
-                    *piece = Piece::Any(size(index));
+            let lifted = |(at, piece): (usize, &Piece)| match piece {
+                Piece::Positive(prior) if free(among[at]) && found[at] < BOUND * prior => {
+                    Piece::Any(size(among[at]))
                 }
-                at += width;
-            }
+                other => other.clone(),
+            };
+            let freed: Vec<Piece> = placed(&pieces).map(lifted).collect();
             if freed == pieces {
                 break;
             }

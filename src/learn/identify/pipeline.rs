@@ -9,7 +9,7 @@ use super::consistent::{BODY, margin};
 use super::equations::{Equations, Known};
 use super::error::IdentifyError;
 use super::factors::Factors;
-use super::fit::{Fit, fit, reweighted};
+use super::fit::{Fit, fit, held_out_rms, reweighted};
 use super::identified::Identified;
 use super::misses::Misses;
 use super::nearest::Nearest;
@@ -37,7 +37,7 @@ pub fn identify(
         }
     }
     if settings.free != Free::All && !model.has_dynamics() {
-        return Err(IdentifyError::NoDynamics { name: model.name.clone() });
+        return Err(IdentifyError::NoDynamics(model.name.clone()));
     }
     let (among, known) = free_parameters(settings.free, model.dof);
     let mut nominal = model.clone();
@@ -57,7 +57,7 @@ pub fn identify(
         Some(found) => nearest.base_values(found.as_slice()),
         None => reweighted(part, settings.weighting, base.rank()).0.beta,
     };
-    let cross_rms = fit.held_out.rms(&fit.factors, &of_part);
+    let cross_rms = held_out_rms(fit.folds.as_deref(), &fit.factors, &of_part);
 
     let beta = nearest.base_values(&parameters);
     let held_out: Vec<Factors> =
@@ -70,7 +70,12 @@ pub fn identify(
     let fitted = explained(std::slice::from_ref(training), &training_misses);
     let predicted = match &validation_misses {
         Some(misses) => Some(explained(validation, misses)),
-        None => cross_explained(training, &fit, &training_misses.with_rms(&cross_rms)),
+        // A single repetition is mostly noise.
+        None if fit.over_repetitions => None,
+        None => {
+            let misses = training_misses.with_rms(&cross_rms);
+            Some(explained(std::slice::from_ref(training), &misses))
+        }
     };
     let quality = quality(
         &equations,
@@ -108,12 +113,6 @@ pub fn identify(
         base,
         fit,
     })
-}
-
-/// Held-out share of the torques' variance that is explained; `None` for repetitions, because a
-/// single one is mostly noise.
-fn cross_explained(training: &Samples, fit: &Fit, misses: &Misses) -> Option<Vec<f64>> {
-    (!fit.over_repetitions).then(|| explained(std::slice::from_ref(training), misses))
 }
 
 /// Indices of the free parameters among all standard parameters, and the known part of the model.

@@ -1,8 +1,8 @@
 //! Selection of the instants of a log at which the equations of motion are written.
 
 use crate::learn::log::{
-    Channel, Log, LowPass, Periods, Section, averaged, bandwidth, find_periods, median_step, range,
-    sections,
+    Channel, Log, LowPass, Periods, Section, averaged, bandwidth, find_periods, median_step,
+    quantile, range, sections,
 };
 
 use super::clipped::{Spans, clipped, folded};
@@ -64,7 +64,7 @@ pub fn prepare(log: &Log, tau: &[Vec<f64>], hints: Hints) -> Result<Samples, Ide
     let (qd, qdd) = (owned(log, Channel::Velocity), owned(log, Channel::Acceleration));
     let resting: Vec<usize> = (0..joints).filter(|joint| range(&q[*joint]) < MOVES).collect();
     if resting.len() == joints {
-        return Err(IdentifyError::Still { range: MOVES });
+        return Err(IdentifyError::Still(MOVES));
     }
     let clipped = clipped(log.time(), &q, tau);
     let mut samples = match (qd, qdd) {
@@ -125,7 +125,7 @@ fn differentiated(
     });
     let sections: Vec<Section> = sections.iter().map(thinned).collect();
     let Some(longest) = sections.iter().max_by_key(|section| section.samples()) else {
-        return Err(IdentifyError::Short { seconds: 0.0 });
+        return Err(IdentifyError::Short(0.0));
     };
     let step = longest.step;
     let known = hints.period.or_else(|| of_cycles(log));
@@ -164,7 +164,7 @@ fn differentiated(
         .map(|section| block(section, joints, &filter, clipped))
         .collect();
     if blocks.is_empty() {
-        return Err(IdentifyError::Short { seconds: 3.0 * step * filter.width() as f64 });
+        return Err(IdentifyError::Short(3.0 * step * filter.width() as f64));
     }
     let rest = (0..joints).map(|joint| slow(&blocks, joint)).collect();
     Ok(Samples {
@@ -301,9 +301,5 @@ fn block(section: &Section, joints: usize, filter: &LowPass, clipped: &Spans) ->
 
 /// The rate below which a joint counts as at rest \[rad/s\].
 fn slow(blocks: &[Block], joint: usize) -> f64 {
-    let mut rates: Vec<f64> =
-        blocks.iter().flat_map(|block| block.qd[joint].iter().map(|x| x.abs())).collect();
-    rates.sort_by(f64::total_cmp);
-    let index = (FAST * rates.len() as f64) as usize;
-    SLOW * rates.get(index).copied().unwrap_or(0.0)
+    SLOW * quantile(blocks.iter().flat_map(|block| &block.qd[joint]).map(|x| x.abs()), FAST)
 }

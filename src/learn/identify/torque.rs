@@ -74,7 +74,7 @@ pub fn torques(model: &Model, log: &Log) -> Result<Torques, IdentifyError> {
         .or_else(|| missing("ic", |joint| Channel::PhaseCurrent(joint, 2)));
     Err(match column {
         Some(column) => IdentifyError::Column { column, joints: n },
-        None => IdentifyError::NoTorque { joints: n },
+        None => IdentifyError::NoTorque(n),
     })
 }
 
@@ -89,7 +89,7 @@ pub fn per_ampere(model: &Model) -> Result<Vec<f64>, IdentifyError> {
         (Some(motors), Some(constants)) => {
             Ok(constants.iter().zip(&motors.ratio).map(|(k, n)| k * n).collect())
         }
-        _ => Err(IdentifyError::NoConstants { name: model.name.clone() }),
+        _ => Err(IdentifyError::NoConstants(model.name.clone())),
     }
 }
 
@@ -123,7 +123,7 @@ fn of_phases(
             let lengths = all.re.iter().zip(&all.im).map(|(x, y)| x.hypot(*y));
             let lengths: Vec<f64> = lengths.collect();
             let Some(signs) = rough.signs(joint) else {
-                return Err(IdentifyError::Sign { joint: joint + 1 });
+                return Err(IdentifyError::Sign(joint + 1));
             };
             notes.push(format!(
                 "joint {}: the current vector does not turn with the rotor; its sign is that \
@@ -132,13 +132,9 @@ fn of_phases(
             ));
             by_segments(&lengths, &signs)
         };
-        for value in &mut current {
-            *value *= scale;
-        }
+        current.iter_mut().for_each(|value| *value *= scale);
         if rough.is_reversed(joint, &current) {
-            for value in &mut current {
-                *value = -*value;
-            }
+            current.iter_mut().for_each(|value| *value = -*value);
         }
         tau.push(current);
     }
@@ -170,10 +166,9 @@ pub(super) fn motor_angle(model: &Model, log: &Log, joint: usize, ratio: f64) ->
 pub(super) fn motor_side(model: &Model, log: &Log, tau: &[Vec<f64>]) -> Vec<usize> {
     let (Some(motors), true) = (&model.motors, model.has_dynamics()) else { return Vec::new() };
     let rough = Rough::new(model, log);
-    let Some(whole) = &rough.whole else { return Vec::new() };
+    let Some([_, whole]) = &rough.tau else { return Vec::new() };
     let share = |joint: usize| {
         let measured = rough.at(&tau[joint]);
-        let product = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(a, b)| a * b).sum::<f64>();
         let (own, both) =
             (product(&whole[joint], &whole[joint]), product(&whole[joint], &measured));
         let related = both * both > DECIDES * own * product(&measured, &measured);
@@ -191,15 +186,17 @@ pub(super) fn motor_side(model: &Model, log: &Log, tau: &[Vec<f64>]) -> Vec<usiz
     (0..model.dof).filter(is_motor).collect()
 }
 
+fn product(x: &[f64], y: &[f64]) -> f64 {
+    x.iter().zip(y).map(|(a, b)| a * b).sum()
+}
+
 /// Torques of the model at a subset of the rows.
 struct Rough {
     rows: Vec<usize>,
     /// Rates by joint.
     qd: Vec<Vec<f64>>,
-    /// Torques of the rigid bodies by joint; `None` without dynamics.
-    tau: Option<Vec<Vec<f64>>>,
-    /// The same including friction.
-    whole: Option<Vec<Vec<f64>>>,
+    /// By joint, the torques of the rigid bodies, and those with friction; `None` without dynamics.
+    tau: Option<[Vec<Vec<f64>>; 2]>,
     all: usize,
 }
 
@@ -221,11 +218,9 @@ impl Rough {
             rates.iter().map(|of| of.iter().map(|at| at[k]).collect()).collect()
         };
         let (qd, qdd) = (order(0), order(1));
-        let mut tau = None;
-        let mut whole = None;
-        if model.has_dynamics() {
+        let tau = model.has_dynamics().then(|| {
             let mut data = Data::new();
-            let (mut rigid, mut with) = (vec![Vec::new(); n], vec![Vec::new(); n]);
+            let [mut rigid, mut whole] = [vec![Vec::new(); n], vec![Vec::new(); n]];
             for row in 0..rows.len() {
                 let at = |series: &[Vec<f64>]| series.iter().map(|x| x[row]).collect::<Vec<f64>>();
                 let torque: [f64; MAX_DOF] =
@@ -233,13 +228,12 @@ impl Rough {
                 let friction = crate::arm::dynamics::friction(model, &at(&qd), &torque);
                 for joint in 0..n {
                     rigid[joint].push(torque[joint]);
-                    with[joint].push(torque[joint] + friction[joint]);
+                    whole[joint].push(torque[joint] + friction[joint]);
                 }
             }
-            tau = Some(rigid);
-            whole = Some(with);
-        }
-        Rough { rows, qd, tau, whole, all: t.len() }
+            [rigid, whole]
+        });
+        Rough { rows, qd, tau, all: t.len() }
     }
 
     fn at(&self, values: &[f64]) -> Vec<f64> {
@@ -250,8 +244,7 @@ impl Rough {
     /// is small, because friction would produce power.
     fn is_reversed(&self, joint: usize, tau: &[f64]) -> bool {
         let tau = self.at(tau);
-        let product = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(a, b)| a * b).sum::<f64>();
-        if let Some(whole) = &self.whole {
+        if let Some([_, whole]) = &self.tau {
             let expected = &whole[joint];
             let both = product(&tau, expected);
             let correlation =
@@ -265,18 +258,18 @@ impl Rough {
 
     /// Sign of the model's torque at each row of the log.
     fn signs(&self, joint: usize) -> Option<Vec<f64>> {
-        let whole = &self.whole.as_ref()?[joint];
+        let [_, whole] = self.tau.as_ref()?;
         let mut signs = vec![0.0; self.all];
         for (k, pair) in self.rows.iter().enumerate() {
             let end = self.rows.get(k + 1).copied().unwrap_or(self.all);
-            signs[*pair..end].fill(whole[k]);
+            signs[*pair..end].fill(whole[joint][k]);
         }
         Some(signs)
     }
 
     /// The missing scale factor from gravity, and a sentence on it.
     fn factor(&self, tau: &[Vec<f64>]) -> (f64, String) {
-        let Some(rigid) = &self.tau else {
+        let Some([rigid, _]) = &self.tau else {
             return (1.0, "scale of the currents: no model to compare with gravity".into());
         };
         let (mut sum, mut weights) = (0.0, 0.0);

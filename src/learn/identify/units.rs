@@ -2,7 +2,7 @@
 
 use crate::arm::dynamics::{Data, Load, rnea};
 use crate::arm::robot::Model;
-use crate::learn::log::{Channel, Log, derivatives, median_step};
+use crate::learn::log::{Channel, Log, derivatives, median_step, quantile, range};
 
 use super::error::IdentifyError;
 use super::torque::motor_side;
@@ -53,26 +53,23 @@ pub fn check_angles(model: &Model, log: &Log) -> Result<(), IdentifyError> {
         || log.of_joints(Channel::Acceleration).is_none();
     let step = median_step(t);
     if differentiated && step > SLOWEST {
-        return Err(IdentifyError::Slow { step });
+        return Err(IdentifyError::Slow(step));
     }
     if let Some(reach) = radians_in_degrees(model, log) {
-        return Err(IdentifyError::Radians { reach });
+        return Err(IdentifyError::Radians(reach));
     }
     for joint in 0..log.joints() {
         let Some(q) = log.column(Channel::Position(joint)) else { continue };
-        let mut rates: Vec<f64> = q
-            .windows(2)
-            .zip(t.windows(2))
-            .map(|(q, t)| ((q[1] - q[0]) / (t[1] - t[0])).abs())
-            .collect();
-        rates.sort_by(f64::total_cmp);
-        let fast = rates.get((FAST * rates.len() as f64) as usize).copied().unwrap_or(0.0);
+        let pairs = q.windows(2).zip(t.windows(2));
+        let rates = pairs.map(|(q, t)| ((q[1] - q[0]) / (t[1] - t[0])).abs());
+        let fast = quantile(rates, FAST);
         let limit = model.limits.velocity.as_ref().map_or(LARGEST, |limits| limits[joint]);
         let reach = q.iter().fold(0.0, |m: f64, q| m.max(q.abs()));
         let [low, high] = model.limits.position[joint];
-        let range = low.abs().max(high.abs());
-        let beyond =
-            |scale: f64| reach * scale > FAR * range.max(1.0) || fast * scale > FAST_BEYOND * limit;
+        let furthest = low.abs().max(high.abs());
+        let beyond = |scale: f64| {
+            reach * scale > FAR * furthest.max(1.0) || fast * scale > FAST_BEYOND * limit
+        };
         if beyond(1.0) && !beyond(1.0 / DEGREES) {
             return Err(IdentifyError::Degrees { joint: joint + 1, reach, fast });
         }
@@ -81,10 +78,7 @@ pub fn check_angles(model: &Model, log: &Log) -> Result<(), IdentifyError> {
             factor(&t[..window], &of[..window], rates)
                 .filter(|factor| !(1.0 / NEAR..NEAR).contains(factor))
         };
-        let turned = |q: &[f64]| {
-            q.iter().fold(f64::MIN, |m, q| m.max(*q)) - q.iter().fold(f64::MAX, |m, q| m.min(*q))
-        };
-        if let Some(qd) = qd.filter(|_| turned(q) > TURNS)
+        if let Some(qd) = qd.filter(|_| range(q) > TURNS)
             && let Some(share) = unrelated(t, q, qd)
         {
             return Err(IdentifyError::Unrelated { joint: joint + 1, share });
@@ -96,7 +90,7 @@ pub fn check_angles(model: &Model, log: &Log) -> Result<(), IdentifyError> {
         if let Some(factor) = qd.zip(qdd).and_then(|(qd, qdd)| wrong(qd, qdd)) {
             return Err(IdentifyError::Accelerations { joint: joint + 1, factor });
         }
-        if qdd.is_some_and(|qdd| turned(q) > TURNS && turned(qdd) == 0.0) {
+        if qdd.is_some_and(|qdd| range(q) > TURNS && range(qdd) == 0.0) {
             return Err(IdentifyError::Accelerations { joint: joint + 1, factor: 0.0 });
         }
     }
@@ -181,16 +175,12 @@ pub fn check_torques(model: &Model, log: &Log, tau: &[Vec<f64>]) -> Result<(), I
         let q = log.column(Channel::Position(joint)).unwrap_or_default();
         let is_one = |x: &[f64]| x.windows(2).all(|pair| pair[0] == pair[1]);
         if is_one(tau) && !is_one(q) {
-            return Err(IdentifyError::Dead { joint: joint + 1 });
+            return Err(IdentifyError::Dead(joint + 1));
         }
     }
     if let Some(limits) = &model.limits.torque {
-        let mut sizes: Vec<f64> = Vec::new();
         for (joint, (tau, limit)) in tau.iter().zip(limits).enumerate() {
-            sizes.clear();
-            sizes.extend(tau.iter().map(|x| x.abs()));
-            sizes.sort_by(f64::total_cmp);
-            let reach = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
+            let reach = quantile(tau.iter().map(|x| x.abs()), 0.5);
             if reach > BEYOND * limit {
                 return Err(IdentifyError::Large { joint: joint + 1, reach, limit: *limit });
             }

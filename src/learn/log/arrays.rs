@@ -51,7 +51,7 @@ mod tests {
         assert_eq!(log.rejected.iter().map(|of| of.row).collect::<Vec<_>>(), [4]);
         let position = log.column(Channel::Position(0)).unwrap();
         assert_eq!(position, [std::f64::consts::FRAC_PI_2; 19]);
-        assert!(matches!(Log::from_columns(&[("q1", &q)]), Err(LogError::NoTime { .. })));
+        assert!(matches!(Log::from_columns(&[("q1", &q)]), Err(LogError::NoTime(_))));
         let ragged = Log::from_columns(&[("t", &t), ("q1", &q), ("tau1", &t[..19])]);
         let expected = LogError::Lengths { name: "tau1".into(), rows: 19, count: 20 };
         assert_eq!(ragged.err(), Some(expected));

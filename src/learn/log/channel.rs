@@ -31,19 +31,6 @@ pub enum Channel {
     Command,
 }
 
-/// Channels that a log has for all joints or for none.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Family {
-    Position,
-    Velocity,
-    Acceleration,
-    Torque,
-    Current,
-    PhaseCurrent(usize),
-    Temperature,
-    Single,
-}
-
 /// A column's channel, and its factor to the SI unit.
 pub(super) struct Named {
     pub(super) channel: Channel,
@@ -51,59 +38,52 @@ pub(super) struct Named {
 }
 
 impl Channel {
-    pub(super) fn family(self) -> Family {
-        match self {
-            Channel::Position(_) => Family::Position,
-            Channel::Velocity(_) => Family::Velocity,
-            Channel::Acceleration(_) => Family::Acceleration,
-            Channel::Torque(_) => Family::Torque,
-            Channel::Current(_) => Family::Current,
-            Channel::PhaseCurrent(_, phase) => Family::PhaseCurrent(phase),
-            Channel::Temperature(_) => Family::Temperature,
-            _ => Family::Single,
+    /// Whether both are the same quantity, perhaps of different joints: a log has it for all joints
+    /// or for none.
+    pub(super) fn is_same_quantity(self, other: Channel) -> bool {
+        match (self, other) {
+            (Channel::PhaseCurrent(_, phase), Channel::PhaseCurrent(_, other)) => phase == other,
+            _ => std::mem::discriminant(&self) == std::mem::discriminant(&other),
         }
+    }
+
+    /// Whether it is a position, a rate or an acceleration.
+    pub(crate) fn is_motion(self) -> bool {
+        matches!(self, Channel::Position(_) | Channel::Velocity(_) | Channel::Acceleration(_))
     }
 
     /// The channel of a column name, regardless of case; `None` for an unknown name.
     pub(super) fn named(name: &str) -> Option<Named> {
         let name = name.trim().to_ascii_lowercase();
-        let plain = |channel| Some(Named { channel, unit: 1.0 });
-        match name.as_str() {
-            "t" => return plain(Channel::Time),
-            "power" => return plain(Channel::Power),
-            "sync" => return plain(Channel::Sync),
-            "cycle" => return plain(Channel::Cycle),
-            "line" => return plain(Channel::Line),
-            "cmd" => return plain(Channel::Command),
-            _ => {}
-        }
-        let (name, degrees) = match name.strip_suffix("_deg") {
-            Some(name) => (name, true),
-            None => (name.as_str(), false),
-        };
-        let digits = name.find(|c: char| c.is_ascii_digit())?;
-        let (quantity, number) = name.split_at(digits);
-        let joint = number.parse::<usize>().ok()?.checked_sub(1)?;
-        let angle = match quantity {
-            "q" => Some(Channel::Position(joint)),
-            "qd" => Some(Channel::Velocity(joint)),
-            "qdd" => Some(Channel::Acceleration(joint)),
+        let single = match name.as_str() {
+            "t" => Some(Channel::Time),
+            "power" => Some(Channel::Power),
+            "sync" => Some(Channel::Sync),
+            "cycle" => Some(Channel::Cycle),
+            "line" => Some(Channel::Line),
+            "cmd" => Some(Channel::Command),
             _ => None,
         };
-        match (angle, degrees) {
-            (Some(channel), true) => Some(Named { channel, unit: 1.0_f64.to_radians() }),
-            (Some(channel), false) => plain(channel),
-            (None, true) => None,
-            (None, false) => match quantity {
-                "tau" => plain(Channel::Torque(joint)),
-                "i" => plain(Channel::Current(joint)),
-                "ia" => plain(Channel::PhaseCurrent(joint, 0)),
-                "ib" => plain(Channel::PhaseCurrent(joint, 1)),
-                "ic" => plain(Channel::PhaseCurrent(joint, 2)),
-                "temp" => plain(Channel::Temperature(joint)),
-                _ => None,
-            },
+        if let Some(channel) = single {
+            return Some(Named { channel, unit: 1.0 });
         }
+        let degrees = name.strip_suffix("_deg");
+        let name = degrees.unwrap_or(&name);
+        let (quantity, number) = name.split_at(name.find(|c: char| c.is_ascii_digit())?);
+        let joint = number.parse::<usize>().ok()?.checked_sub(1)?;
+        let channel = match (quantity, degrees) {
+            ("q", _) => Channel::Position(joint),
+            ("qd", _) => Channel::Velocity(joint),
+            ("qdd", _) => Channel::Acceleration(joint),
+            ("tau", None) => Channel::Torque(joint),
+            ("i", None) => Channel::Current(joint),
+            ("ia", None) => Channel::PhaseCurrent(joint, 0),
+            ("ib", None) => Channel::PhaseCurrent(joint, 1),
+            ("ic", None) => Channel::PhaseCurrent(joint, 2),
+            ("temp", None) => Channel::Temperature(joint),
+            _ => return None,
+        };
+        Some(Named { channel, unit: degrees.map_or(1.0, |_| 1.0_f64.to_radians()) })
     }
 
     /// The joint of the channel, if any.

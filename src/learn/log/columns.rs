@@ -18,18 +18,14 @@ impl ColumnMap {
     pub fn parse(text: &str) -> Result<ColumnMap, LogError> {
         let mut pairs: Vec<(String, String)> = Vec::new();
         for part in text.split(',').filter(|part| !part.trim().is_empty()) {
-            let Some((channel, column)) = part.split_once('=') else {
-                return Err(LogError::Map { part: part.trim().to_owned() });
-            };
+            let pair = part.split_once('=').filter(|(_, column)| !column.trim().is_empty());
+            let (channel, column) = pair.ok_or_else(|| LogError::Map(part.trim().to_owned()))?;
             let (channel, column) = (channel.trim().to_owned(), column.trim().to_owned());
-            if column.is_empty() {
-                return Err(LogError::Map { part: part.trim().to_owned() });
-            }
             if Channel::named(&channel).is_none() {
-                return Err(LogError::UnknownChannel { name: channel });
+                return Err(LogError::UnknownChannel(channel));
             }
             if pairs.iter().any(|(known, _)| known.eq_ignore_ascii_case(&channel)) {
-                return Err(LogError::MappedTwice { name: channel });
+                return Err(LogError::MappedTwice(channel));
             }
             if let Some((other, _)) = pairs.iter().find(|(_, known)| *known == column) {
                 return Err(LogError::ColumnTwice { column, other: other.clone(), name: channel });
@@ -49,7 +45,7 @@ impl ColumnMap {
         let taken = |(channel, _): &(String, String)| {
             Channel::named(channel).is_some_and(|other| other.channel == named.channel)
         };
-        if self.pairs.iter().any(taken) { None } else { Some(named) }
+        (!self.pairs.iter().any(taken)).then_some(named)
     }
 }
 
@@ -85,7 +81,7 @@ pub(super) fn check(columns: &[Column], names: &[String], map: &ColumnMap) -> Re
         }
     }
     if !columns.iter().any(|column| column.named.channel == Channel::Time) {
-        return Err(LogError::NoTime { header: header() });
+        return Err(LogError::NoTime(header()));
     }
     for (i, column) in columns.iter().enumerate() {
         let channel = column.named.channel;
@@ -93,10 +89,13 @@ pub(super) fn check(columns: &[Column], names: &[String], map: &ColumnMap) -> Re
             return Err(LogError::Twice { first: other.name.clone(), second: column.name.clone() });
         }
         let Some(joint) = channel.joint() else { continue };
-        let of_family = columns.iter().map(|other| other.named.channel);
-        let of_family = of_family.filter(|other| other.family() == channel.family());
-        let joints: Vec<usize> = of_family.filter_map(Channel::joint).collect();
-        if let Some(missing) = (0..joint).find(|before| !joints.contains(before)) {
+        let has = |joint: usize| {
+            columns
+                .iter()
+                .map(|other| other.named.channel)
+                .any(|other| other.is_same_quantity(channel) && other.joint() == Some(joint))
+        };
+        if let Some(missing) = (0..joint).find(|before| !has(*before)) {
             return Err(LogError::Gap { found: column.name.clone(), missing: missing + 1 });
         }
     }

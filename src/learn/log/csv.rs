@@ -45,7 +45,7 @@ pub(super) fn read_rows(head: &[u8], rest: impl Read, map: &ColumnMap) -> Result
     let mut values = Vec::with_capacity(columns.len());
     while reader
         .read_byte_record(&mut record)
-        .map_err(|error| LogError::Stream { reason: error.to_string() })?
+        .map_err(|error| LogError::Stream(error.to_string()))?
     {
         let line = record.position().map_or(0, csv::Position::line);
         let read = numbers(&record, names.len(), &columns, &mut values);

@@ -1,6 +1,6 @@
 //! A log as columns of numbers.
 
-use super::channel::{Channel, Family};
+use super::channel::Channel;
 
 /// Least number of usable rows.
 pub const MIN_ROWS: usize = 10;
@@ -52,7 +52,7 @@ impl Log {
     /// Number of joints whose positions are logged.
     #[must_use]
     pub fn joints(&self) -> usize {
-        self.channels.iter().filter(|channel| channel.family() == Family::Position).count()
+        self.channels.iter().filter(|channel| matches!(channel, Channel::Position(_))).count()
     }
 
     /// The column of a channel, if the log has it.

@@ -15,6 +15,8 @@ use std::ops::Range;
 
 use nalgebra::{SMatrix, SVector};
 
+use super::uniform::between_gaps;
+
 /// Number of coefficients of the polynomial: degree 5.
 const TERMS: usize = 6;
 /// Number of coefficients beside a jump.
@@ -43,15 +45,15 @@ const AT_REST: f64 = 3.0;
 /// section that is too short for a parabola. A first derivative within the noise is 0.
 #[must_use]
 pub fn derivatives(t: &[f64], x: &[f64]) -> Vec<Option<[f64; 2]>> {
-    let sections = sections(t);
+    let sections = between_gaps(t, GAP);
     let half = half_width(t, x, &sections);
     let mut found = vec![None; t.len()];
     let smooth = Smooth::new(t, x, &sections);
     // Variance of the noise, from prediction errors; jumps increase these.
     let noise = error_of(t, x, &sections, half).unwrap_or(0.0).min(smooth.variance);
-    for [from, to] in &sections {
-        for i in *from..*to {
-            found[i] = smooth.fit([*from, *to], i, half).map(|fit| {
+    for section in &sections {
+        for i in section.clone() {
+            found[i] = smooth.fit(section, i, half).map(|fit| {
                 let deviation = (noise * fit.rate_variance).sqrt();
                 let rate = if fit.rate.abs() < AT_REST * deviation { 0.0 } else { fit.rate };
                 [rate, fit.acceleration]
@@ -61,24 +63,8 @@ pub fn derivatives(t: &[f64], x: &[f64]) -> Vec<Option<[f64; 2]>> {
     found
 }
 
-/// First and last (exclusive) sample of each section without a gap.
-fn sections(t: &[f64]) -> Vec<[usize; 2]> {
-    let mut intervals: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    intervals.sort_by(f64::total_cmp);
-    let longest = intervals.get(intervals.len() / 2).map_or(f64::INFINITY, |median| GAP * median);
-    let mut sections = Vec::new();
-    let mut begin = 0;
-    for i in 1..=t.len() {
-        if i == t.len() || t[i] - t[i - 1] > longest {
-            sections.push([begin, i]);
-            begin = i;
-        }
-    }
-    sections
-}
-
 /// Half width of the window for a series.
-fn half_width(t: &[f64], x: &[f64], sections: &[[usize; 2]]) -> usize {
+fn half_width(t: &[f64], x: &[f64], sections: &[Range<usize>]) -> usize {
     let errors: Vec<(usize, f64)> = HALF_WIDTHS
         .iter()
         .filter_map(|half| Some((*half, error_of(t, x, sections, *half)?)))
@@ -89,12 +75,12 @@ fn half_width(t: &[f64], x: &[f64], sections: &[[usize; 2]]) -> usize {
 }
 
 /// Mean squared leave-one-out prediction error; `None` if no window of this width fits.
-fn error_of(t: &[f64], x: &[f64], sections: &[[usize; 2]], half: usize) -> Option<f64> {
+fn error_of(t: &[f64], x: &[f64], sections: &[Range<usize>], half: usize) -> Option<f64> {
     let stride = t.len().div_ceil(TRIALS).max(1);
     let (mut sum, mut count) = (0.0, 0.0);
-    for [from, to] in sections.iter().filter(|[from, to]| to - from > 2 * half) {
-        for i in (from + half..to - half).step_by(stride) {
-            let Some(fit) = fit(t, x, [*from, *to], i, half) else { continue };
+    for section in sections {
+        for i in inner(section, half).step_by(stride) {
+            let Some(fit) = fit(t, x, section, i, half) else { continue };
             // The leave-one-out error follows from the fit with the sample.
             let miss = (x[i] - fit.value) / (1.0 - fit.leverage).max(f64::EPSILON);
             sum += miss * miss;
@@ -102,6 +88,11 @@ fn error_of(t: &[f64], x: &[f64], sections: &[[usize; 2]], half: usize) -> Optio
         }
     }
     (count > 0.0).then(|| sum / count)
+}
+
+/// The samples of a section with a whole window around them.
+fn inner(section: &Range<usize>, half: usize) -> Range<usize> {
+    section.start + half..section.end.saturating_sub(half)
 }
 
 /// A series, and the variance of its noise in the narrowest windows.
@@ -112,12 +103,12 @@ struct Smooth<'a> {
 }
 
 impl<'a> Smooth<'a> {
-    fn new(t: &'a [f64], x: &'a [f64], sections: &[[usize; 2]]) -> Smooth<'a> {
+    fn new(t: &'a [f64], x: &'a [f64], sections: &[Range<usize>]) -> Smooth<'a> {
         let half = HALF_WIDTHS[0];
         let stride = t.len().div_ceil(TRIALS).max(1);
-        let inner = sections.iter().filter(|[from, to]| to - from > 2 * half);
-        let looks: Vec<[f64; 2]> = inner
-            .flat_map(|[from, to]| (from + half..to - half).step_by(stride))
+        let looks: Vec<[f64; 2]> = sections
+            .iter()
+            .flat_map(|section| inner(section, half).step_by(stride))
             .filter_map(|i| {
                 let fit = window_fit(t, x, i - half..i + half + 1, i, TERMS)?;
                 Some([(x[i + half] - x[i - half]).abs(), fit.left])
@@ -135,8 +126,8 @@ impl<'a> Smooth<'a> {
     }
 
     /// The fit around sample `i` of a section, or an off-centre fit if the centred one fails.
-    fn fit(&self, [from, to]: [usize; 2], i: usize, half: usize) -> Option<Fit> {
-        let centred = fit(self.t, self.x, [from, to], i, half)?;
+    fn fit(&self, section: &Range<usize>, i: usize, half: usize) -> Option<Fit> {
+        let centred = fit(self.t, self.x, section, i, half)?;
         if self.variance == 0.0 || self.fits(&centred) {
             return Some(centred);
         }
@@ -144,8 +135,8 @@ impl<'a> Smooth<'a> {
         let mut least: Option<Fit> = None;
         for half in HALF_WIDTHS.into_iter().filter(|other| *other <= half) {
             let width = 2 * half + 1;
-            let [low, high] =
-                [(i + 1).saturating_sub(width).max(from), i.min(to.saturating_sub(width))];
+            let low = (i + 1).saturating_sub(width).max(section.start);
+            let high = i.min(section.end.saturating_sub(width));
             let places = (low..high).step_by((width / PLACES).max(1)).chain([high]);
             // A section shorter than the window has no position for it.
             for first in places.filter(|first| *first >= low) {
@@ -193,9 +184,9 @@ struct Fit {
 }
 
 /// The fit around sample `i` of a section.
-fn fit(t: &[f64], x: &[f64], [from, to]: [usize; 2], i: usize, half: usize) -> Option<Fit> {
-    let width = (2 * half + 1).min(to - from);
-    let first = i.saturating_sub(half).clamp(from, to - width);
+fn fit(t: &[f64], x: &[f64], section: &Range<usize>, i: usize, half: usize) -> Option<Fit> {
+    let width = (2 * half + 1).min(section.len());
+    let first = i.saturating_sub(half).clamp(section.start, section.end - width);
     // A short section has a polynomial with fewer terms, down to a parabola.
     window_fit(t, x, first..first + width, i, TERMS.min(width))
 }

@@ -18,12 +18,9 @@ pub enum LogError {
     /// No header, or an unknown one.
     #[error(
         "no column t in the header{}: the first row names the columns, such as t,q1,q2,tau1,tau2, or --map says which is which",
-        if header.trim().is_empty() { " (the file is empty)".to_owned() } else { format!(" '{header}'") }
+        if .0.trim().is_empty() { " (the file is empty)".to_owned() } else { format!(" '{}'", .0) }
     )]
-    NoTime {
-        /// The first row.
-        header: String,
-    },
+    NoTime(String),
     /// Columns of different lengths.
     #[error("{name} has {rows} values, another column has {count}: give one for each row")]
     Lengths {
@@ -35,26 +32,17 @@ pub enum LogError {
         count: usize,
     },
     /// An invalid part of a column map.
-    #[error("--map {part}: write it as CHANNEL=COLUMN, such as tau1=MotorTorque_1,q1_deg=J1")]
-    Map {
-        /// The part.
-        part: String,
-    },
+    #[error("--map {0}: write it as CHANNEL=COLUMN, such as tau1=MotorTorque_1,q1_deg=J1")]
+    Map(String),
     /// A column map names an unknown channel.
     #[error(
-        "--map {name}=…: no such channel; give t, q1…, qd1…, qdd1… (or q1_deg…), tau1…, i1…, \
+        "--map {0}=…: no such channel; give t, q1…, qd1…, qdd1… (or q1_deg…), tau1…, i1…, \
          ia1…, ib1…, ic1…, temp1…, power, sync, cycle, line or cmd"
     )]
-    UnknownChannel {
-        /// As given.
-        name: String,
-    },
+    UnknownChannel(String),
     /// A column map names a channel twice.
-    #[error("--map names {name} twice: leave one out")]
-    MappedTwice {
-        /// The channel.
-        name: String,
-    },
+    #[error("--map names {0} twice: leave one out")]
+    MappedTwice(String),
     /// A column map names a column that the file does not have.
     #[error("--map {channel}={column}: the file has no column '{column}' but {header}")]
     NoColumn {
@@ -65,24 +53,15 @@ pub enum LogError {
         /// The existing columns.
         header: String,
     },
-    /// A Parquet file that can't be read.
-    #[error("the Parquet file can't be read ({reason}): write it again, or as CSV")]
-    Parquet {
-        /// Cause.
-        reason: String,
-    },
-    /// Bytes that are not text.
-    #[error("the file is {what}: give it as CSV or Parquet")]
-    NoText {
-        /// Probable type of the file.
-        what: &'static str,
-    },
-    /// A file that can't be read to its end.
-    #[error("the file can't be read to its end ({reason})")]
-    Stream {
-        /// Cause.
-        reason: String,
-    },
+    /// A Parquet file that can't be read for this reason.
+    #[error("the Parquet file can't be read ({0}): write it again, or as CSV")]
+    Parquet(String),
+    /// Bytes of this kind instead of text.
+    #[error("the file is {0}: give it as CSV or Parquet")]
+    NoText(&'static str),
+    /// A file that can't be read to its end for this reason.
+    #[error("the file can't be read to its end ({0})")]
+    Stream(String),
     /// Two columns for one quantity.
     #[error("the columns {first} and {second} are the same quantity: leave one out")]
     Twice {

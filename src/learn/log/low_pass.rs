@@ -28,21 +28,16 @@ impl LowPass {
         let of = |order: usize| orders.iter().map(|all| all[order]).collect::<Vec<f64>>();
         let (mut value, mut first, mut second) = (of(0), of(1), of(2));
 
+        let normalise = |weights: &mut [f64], by: f64| weights.iter_mut().for_each(|w| *w /= by);
         let sum: f64 = value.iter().sum();
-        for weight in &mut value {
-            *weight /= sum;
-        }
+        normalise(&mut value, sum);
         // The weighted sum of −t over past samples is the rate of a straight line.
         let slope: f64 = first.iter().zip(&times).map(|(w, t)| -w * t).sum();
-        for weight in &mut first {
-            *weight /= slope;
-        }
+        normalise(&mut first, slope);
         let mean: f64 = second.iter().sum();
         second.iter_mut().zip(&value).for_each(|(w, v)| *w -= mean * v);
         let bend: f64 = second.iter().zip(&times).map(|(w, t)| 0.5 * w * t * t).sum();
-        for weight in &mut second {
-            *weight /= bend;
-        }
+        normalise(&mut second, bend);
         // The kernel is reversed for the convolution.
         first.reverse();
         LowPass { half, weights: [value, first, second] }

@@ -3,10 +3,10 @@
 //! A digital output changes while the robot moves. One recorder logs it with the positions, the other with
 //! the currents, as a voltage. The times of the changes give offset and rate of the clocks.
 
-use super::channel::{Channel, Family};
+use super::channel::Channel;
 use super::data::Log;
 use super::error::LogError;
-use super::uniform::{interpolated, median_step};
+use super::uniform::{extremes, interpolated_at, median_step};
 
 /// Least number of changes: fewer are ambiguous.
 const MARKS: usize = 3;
@@ -18,12 +18,14 @@ const OFF: f64 = 2.5;
 /// Whether `positions` has positions only, and `other` torques or currents without positions.
 #[must_use]
 pub fn are_halves(positions: &Log, other: &Log) -> bool {
-    let has = |log: &Log, family: Family| log.channels.iter().any(|c| c.family() == family);
-    let driven = [Family::Torque, Family::Current, Family::PhaseCurrent(0)];
-    has(positions, Family::Position)
-        && !has(other, Family::Position)
-        && driven.iter().any(|family| has(other, *family))
-        && !driven.iter().any(|family| has(positions, *family))
+    let has = |log: &Log, quantity: Channel| {
+        log.channels.iter().any(|channel| channel.is_same_quantity(quantity))
+    };
+    let driven = [Channel::Torque(0), Channel::Current(0), Channel::PhaseCurrent(0, 0)];
+    has(positions, Channel::Position(0))
+        && !has(other, Channel::Position(0))
+        && driven.iter().any(|quantity| has(other, *quantity))
+        && !driven.iter().any(|quantity| has(positions, *quantity))
 }
 
 /// Two synchronised logs as one.
@@ -68,11 +70,9 @@ pub fn aligned(positions: &Log, other: &Log) -> Result<Aligned, LogError> {
     let kept: Vec<usize> =
         (0..clock.len()).filter(|i| (first..=last).contains(&clock[*i])).collect();
     let mut log = Log {
-        channels: other.channels.clone(),
-        values: other.values.iter().map(|x| kept.iter().map(|i| x[*i]).collect()).collect(),
-        rows: kept.iter().map(|i| other.rows[*i]).collect(),
         rejected: positions.rejected.iter().chain(&other.rejected).cloned().collect(),
         degrees: positions.degrees.clone(),
+        ..other.of_rows(&kept)
     };
     for (channel, values) in log.channels.iter().zip(&mut log.values) {
         if *channel == Channel::Time {
@@ -80,21 +80,13 @@ pub fn aligned(positions: &Log, other: &Log) -> Result<Aligned, LogError> {
         }
     }
     for (channel, values) in positions.channels.iter().zip(&positions.values) {
-        if matches!(channel.family(), Family::Position | Family::Velocity | Family::Acceleration) {
+        if channel.is_motion() {
             log.channels.push(*channel);
             let at = |i: &usize| interpolated_at(t, values, clock[*i]);
             log.values.push(kept.iter().map(at).collect());
         }
     }
     Ok(Aligned { log, marks: pairs, worst, step })
-}
-
-fn interpolated_at(t: &[f64], x: &[f64], at: f64) -> f64 {
-    let after = t.partition_point(|t| *t < at);
-    let width = t.len().min(4);
-    let first = after.saturating_sub(2).min(t.len() - width);
-    let part = first..first + width;
-    interpolated(&t[part.clone()], &x[part], at, 1.0, 1)[0]
 }
 
 /// One clock as a linear function of the other: `here = to + pace (there − from)`.
@@ -135,9 +127,7 @@ type Change = (f64, bool);
 /// The changes of the mark, interpolated between samples of a voltage.
 fn changes(log: &Log) -> Vec<Change> {
     let Some(mark) = log.column(Channel::Sync) else { return Vec::new() };
-    let (low, high) = mark
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
+    let [low, high] = extremes(mark);
     let middle = 0.5 * (low + high);
     let t = log.time();
     let mut times = Vec::new();

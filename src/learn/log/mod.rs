@@ -40,4 +40,4 @@ pub use periods::{Periods, find_periods};
 pub use read::{read, read_from};
 pub use three_phase::{Signed, Vectors, coherence, signed, vectors};
 pub use time_shift::{Delay, Shift, between_grid, downhill, golden_section, on_grid, vertex};
-pub use uniform::{Section, interpolated, median_step, range, sections};
+pub use uniform::{Section, interpolated, median_step, quantile, range, sections};

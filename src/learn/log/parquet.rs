@@ -22,7 +22,7 @@ const FIRST_ROW: u64 = 2;
 pub(super) fn read_parquet(bytes: &[u8], map: &ColumnMap) -> Result<Log, LogError> {
     // The decoders of the crate may panic on a damaged page.
     let read = catch_unwind(AssertUnwindSafe(|| read(bytes, map)));
-    read.unwrap_or_else(|_| Err(LogError::Parquet { reason: "it is damaged".into() }))
+    read.unwrap_or_else(|_| Err(LogError::Parquet("it is damaged".into())))
 }
 
 fn read(bytes: &[u8], map: &ColumnMap) -> Result<Log, LogError> {
@@ -71,5 +71,5 @@ fn number(row: &Row, index: usize, name: &str) -> Result<f64, String> {
 }
 
 fn wrong(error: &ParquetError) -> LogError {
-    LogError::Parquet { reason: error.to_string() }
+    LogError::Parquet(error.to_string())
 }

@@ -26,13 +26,13 @@ pub fn read(bytes: &[u8], map: &ColumnMap) -> Result<Log, LogError> {
 /// # Errors
 /// The errors of [`read`], and an interrupted stream.
 pub fn read_from(mut stream: impl Read, map: &ColumnMap) -> Result<Log, LogError> {
-    let broken = |error: std::io::Error| LogError::Stream { reason: error.to_string() };
+    let broken = |error: std::io::Error| LogError::Stream(error.to_string());
     let mut head = Vec::new();
     stream.by_ref().take(HEAD).read_to_end(&mut head).map_err(broken)?;
     let parquet = head.starts_with(b"PAR1");
     if !parquet && !utf16::is_utf16(&head) {
         if let Some(what) = no_text(&head) {
-            return Err(LogError::NoText { what });
+            return Err(LogError::NoText(what));
         }
         return read_rows(&head, stream, map);
     }
@@ -43,7 +43,7 @@ pub fn read_from(mut stream: impl Read, map: &ColumnMap) -> Result<Log, LogError
     #[cfg(feature = "parquet")]
     return read_parquet(&head, map);
     #[cfg(not(feature = "parquet"))]
-    Err(LogError::Parquet { reason: "this build does not read them".into() })
+    Err(LogError::Parquet("this build does not read them".into()))
 }
 
 /// Description of a file that is not text, from its first bytes.

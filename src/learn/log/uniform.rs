@@ -1,5 +1,7 @@
 //! Samples at equal intervals.
 
+use std::ops::Range;
+
 /// An interval longer than the median by this factor ends a section.
 const GAP: f64 = 3.5;
 /// Largest deviation of a sample from the grid, as a share of the interval.
@@ -39,17 +41,26 @@ impl Section {
 /// The median interval of ascending times \[s\]; 0 for fewer than two.
 #[must_use]
 pub fn median_step(t: &[f64]) -> f64 {
-    let mut steps: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    steps.sort_by(f64::total_cmp);
-    steps.get(steps.len() / 2).copied().unwrap_or(0.0)
+    quantile(t.windows(2).map(|pair| pair[1] - pair[0]), 0.5)
+}
+
+/// The value at this share of the sorted values; 0 without any.
+#[must_use]
+pub fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
+    let mut sorted: Vec<f64> = values.collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get((share * sorted.len() as f64) as usize).copied().unwrap_or(0.0)
+}
+
+/// The least and the largest value.
+pub(super) fn extremes(x: &[f64]) -> [f64; 2] {
+    x.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(*x), high.max(*x)])
 }
 
 /// The difference of the largest and the smallest value.
 #[must_use]
 pub fn range(x: &[f64]) -> f64 {
-    let (low, high) = x
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
+    let [low, high] = extremes(x);
     high - low
 }
 
@@ -57,13 +68,21 @@ pub fn range(x: &[f64]) -> f64 {
 /// interpolation of four samples. A gap begins a new section.
 #[must_use]
 pub fn sections(t: &[f64], series: &[&[f64]]) -> Vec<Section> {
-    let usual = median_step(t);
+    let part = |rows: Range<usize>| {
+        let series: Vec<&[f64]> = series.iter().map(|x| &x[rows.clone()]).collect();
+        section(&t[rows], &series)
+    };
+    between_gaps(t, GAP).into_iter().map(part).collect()
+}
+
+/// The rows between gaps: intervals longer than `gap` times the median one.
+pub(super) fn between_gaps(t: &[f64], gap: f64) -> Vec<Range<usize>> {
+    let longest = gap * median_step(t);
     let mut sections = Vec::new();
     let mut begin = 0;
     for end in 1..=t.len() {
-        if end == t.len() || t[end] - t[end - 1] > GAP * usual {
-            let part: Vec<&[f64]> = series.iter().map(|x| &x[begin..end]).collect();
-            sections.push(section(&t[begin..end], &part));
+        if end == t.len() || t[end] - t[end - 1] > longest {
+            sections.push(begin..end);
             begin = end;
         }
     }
@@ -124,19 +143,16 @@ fn roughness(x: &[f64]) -> f64 {
 /// `x` interpolated at `count` times from `start` on.
 #[must_use]
 pub fn interpolated(t: &[f64], x: &[f64], start: f64, step: f64, count: usize) -> Vec<f64> {
-    let mut out = Vec::with_capacity(count);
-    let mut after = 0;
-    for k in 0..count {
-        let at = start + step * k as f64;
-        while after < t.len() && t[after] < at {
-            after += 1;
-        }
-        // Two samples before and two after, fewer at the ends.
-        let width = t.len().min(4);
-        let first = after.saturating_sub(2).min(t.len() - width);
-        out.push(lagrange(&t[first..first + width], &x[first..first + width], at));
-    }
-    out
+    (0..count).map(|k| interpolated_at(t, x, start + step * k as f64)).collect()
+}
+
+/// `x` interpolated at a time.
+pub(super) fn interpolated_at(t: &[f64], x: &[f64], at: f64) -> f64 {
+    // Two samples before and two after, fewer at the ends.
+    let width = t.len().min(4);
+    let after = t.partition_point(|t| *t < at);
+    let first = after.saturating_sub(2).min(t.len() - width);
+    lagrange(&t[first..first + width], &x[first..first + width], at)
 }
 
 /// The value at `at` of the polynomial through the points.

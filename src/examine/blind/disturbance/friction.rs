@@ -2,11 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use super::super::action::{Action, Moment};
 use super::super::fault::Disturbance;
 use super::super::random::Random;
 use super::super::scale::Scale;
-use super::laws::{memoryless, with_state};
 
 /// Width of the smooth transition, as a share of the typical largest power.
 const SMOOTH: f64 = 0.05;
@@ -14,7 +12,7 @@ const SMOOTH: f64 = 0.05;
 pub(super) fn friction_level(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let joint = scale.any_joint(random);
     // More than three standard deviations of the nominal values.
-    let least = 3.3 * scale.trust.friction();
+    let least = 3.3 * scale.trust.friction;
     let [coulomb, viscous] = match random.below(3) {
         0 => [random.log_between(least, 4.0 * least), 0.0],
         1 => [0.0, random.log_between(least, 4.0 * least)],
@@ -24,14 +22,13 @@ pub(super) fn friction_level(scale: &Scale<'_>, random: &mut Random) -> Disturba
     let bounded = |share: f64| (sign * share).max(-0.8);
     let coulomb = bounded(coulomb) * scale.plant.coulomb[joint];
     let viscous = bounded(viscous) * scale.plant.viscous[joint];
-    let forms = ["constant", "smooth_step", "sag_at_speed"];
-    let form = random.below(forms.len());
+    let (form, name) = random.form(["constant", "smooth_step", "sag_at_speed"]);
     let fastest = scale.fastest[joint].max(1e-3);
-    Disturbance::at_joint("friction_level", forms[form], joint)
+    Disturbance::at_joint("friction_level", name, joint)
         // Relative to the nominal model: the usual spread is a part of the change.
         .graded("coulomb", coulomb + scale.plant.coulomb[joint] - scale.nominal.coulomb[joint])
         .graded("viscous", viscous + scale.plant.viscous[joint] - scale.nominal.viscous[joint])
-        .acting(Action::Gears(memoryless(joint, move |m| {
+        .motor_torque(joint, move |m| {
             let v = m.rate[joint];
             let dry = match form {
                 1 => (v / (0.01 * fastest)).tanh(),
@@ -39,19 +36,19 @@ pub(super) fn friction_level(scale: &Scale<'_>, random: &mut Random) -> Disturba
                 _ => m.sign[joint],
             };
             coulomb * dry + viscous * v
-        })))
+        })
 }
 
 pub(super) fn stribeck(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let joint = scale.any_joint(random);
     let stiction = random.log_between(0.15, 0.8) * scale.plant.coulomb[joint];
     let velocity = random.log_between(0.02, 0.2);
-    let forms = ["exponential", "gaussian", "lorentzian", "one_minus_tanh", "logistic"];
-    let form = random.below(forms.len());
-    Disturbance::at_joint("stribeck", forms[form], joint)
+    let (form, name) =
+        random.form(["exponential", "gaussian", "lorentzian", "one_minus_tanh", "logistic"]);
+    Disturbance::at_joint("stribeck", name, joint)
         .with("stiction", stiction)
         .with("velocity", velocity)
-        .acting(Action::Gears(memoryless(joint, move |m| {
+        .motor_torque(joint, move |m| {
             let x = (m.rate[joint] / velocity).abs();
             let left = match form {
                 0 => (-x).exp(),
@@ -61,15 +58,15 @@ pub(super) fn stribeck(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
                 _ => 1.0 / (1.0 + ((x - 1.0) / 0.25).exp()),
             };
             stiction * left * m.sign[joint]
-        })))
+        })
 }
 
 pub(super) fn nonlinear_viscous(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let joint = scale.any_joint(random);
     let fastest = scale.fastest[joint].max(1e-3);
     let size = random.log_between(0.15, 1.0) * scale.plant.viscous[joint] * fastest;
-    let forms = ["power_below_1", "cubic", "windage", "logarithm", "saturating"];
-    let form = random.below(forms.len());
+    let (form, name) =
+        random.form(["power_below_1", "cubic", "windage", "logarithm", "saturating"]);
     let exponent = match form {
         0 => random.between(0.3, 0.7),
         1 => 3.0,
@@ -77,10 +74,10 @@ pub(super) fn nonlinear_viscous(scale: &Scale<'_>, random: &mut Random) -> Distu
         _ => random.between(0.05, 0.25),
     };
     let coefficient = size / if form < 3 { fastest.powf(exponent) } else { 1.0 };
-    Disturbance::at_joint("nonlinear_viscous", forms[form], joint)
+    Disturbance::at_joint("nonlinear_viscous", name, joint)
         .with("coefficient", coefficient)
         .with("exponent", exponent)
-        .acting(Action::Gears(memoryless(joint, move |m| {
+        .motor_torque(joint, move |m| {
             let x = (m.rate[joint] / fastest).abs();
             let grown = match form {
                 3 => (1.0 + x / exponent).ln() / (1.0 + 1.0 / exponent).ln(),
@@ -88,18 +85,17 @@ pub(super) fn nonlinear_viscous(scale: &Scale<'_>, random: &mut Random) -> Distu
                 _ => x.powf(exponent),
             };
             size * grown * m.sign[joint]
-        })))
+        })
 }
 
 pub(super) fn viscous_asymmetry(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let joint = scale.any_joint(random);
     let asymmetry = random.sign() * random.log_between(0.04, 0.3) * scale.plant.viscous[joint];
     let fastest = scale.fastest[joint].max(1e-3);
-    let forms = ["absolute", "rounded", "square", "forwards_only"];
-    let form = random.below(forms.len());
-    Disturbance::at_joint("viscous_asymmetry", forms[form], joint)
+    let (form, name) = random.form(["absolute", "rounded", "square", "forwards_only"]);
+    Disturbance::at_joint("viscous_asymmetry", name, joint)
         .with("asymmetry", asymmetry)
-        .acting(Action::Gears(memoryless(joint, move |m| {
+        .motor_torque(joint, move |m| {
             let v = m.rate[joint];
             let rounded = 0.05 * fastest;
             asymmetry
@@ -109,19 +105,18 @@ pub(super) fn viscous_asymmetry(scale: &Scale<'_>, random: &mut Random) -> Distu
                     3 => 2.0 * v.max(0.0),
                     _ => v.abs(),
                 }
-        })))
+        })
 }
 
 pub(super) fn load_friction(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let joint = scale.any_joint(random);
     let mu = random.log_between(0.01, 0.15);
     let typical = scale.load[joint].max(1e-3);
-    let forms = ["linear", "rounded", "power_below_1"];
-    let form = random.below(forms.len());
-    Disturbance::at_joint("load_friction", forms[form], joint)
+    let (form, name) = random.form(["linear", "rounded", "power_below_1"]);
+    Disturbance::at_joint("load_friction", name, joint)
         .with("mu", mu)
         .like(&["gear_efficiency"])
-        .acting(Action::Gears(memoryless(joint, move |m| {
+        .motor_torque(joint, move |m| {
             let load = m.load[joint].abs();
             let grown = match form {
                 1 => load.hypot(0.2 * typical) - 0.2 * typical,
@@ -129,7 +124,7 @@ pub(super) fn load_friction(scale: &Scale<'_>, random: &mut Random) -> Disturban
                 _ => load,
             };
             mu * grown * m.sign[joint]
-        })))
+        })
 }
 
 pub(super) fn gear_efficiency(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
@@ -137,12 +132,11 @@ pub(super) fn gear_efficiency(scale: &Scale<'_>, random: &mut Random) -> Disturb
     let motoring = random.log_between(0.03, 0.25);
     let generating = motoring * random.between(0.1, 0.6);
     let (typical, fastest) = (scale.load[joint].max(1e-3), scale.fastest[joint].max(1e-3));
-    let forms = ["switched", "smooth_switch", "saturating_load"];
-    let form = random.below(forms.len());
-    Disturbance::at_joint("gear_efficiency", forms[form], joint)
+    let (form, name) = random.form(["switched", "smooth_switch", "saturating_load"]);
+    Disturbance::at_joint("gear_efficiency", name, joint)
         .with("motoring", motoring)
         .with("generating", generating)
-        .acting(Action::Gears(memoryless(joint, move |m| {
+        .motor_torque(joint, move |m| {
             let (load, v) = (m.load[joint], m.rate[joint]);
             let power = load * v / (typical * fastest);
             let driving = match form {
@@ -155,7 +149,7 @@ pub(super) fn gear_efficiency(scale: &Scale<'_>, random: &mut Random) -> Disturb
                 _ => load.abs(),
             };
             loss * through * m.sign[joint]
-        })))
+        })
 }
 
 pub(super) fn position_friction(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
@@ -164,12 +158,11 @@ pub(super) fn position_friction(scale: &Scale<'_>, random: &mut Random) -> Distu
     let phase = random.between(0.0, TAU);
     let [low, high] = scale.workspace.range[joint];
     let tight = random.between(low, high);
-    let forms = ["cosine", "two_harmonics", "tight_spot", "worn_range"];
-    let form = random.below(forms.len());
-    Disturbance::at_joint("position_friction", forms[form], joint)
+    let (form, name) = random.form(["cosine", "two_harmonics", "tight_spot", "worn_range"]);
+    Disturbance::at_joint("position_friction", name, joint)
         .with("amplitude", amplitude)
         .with("phase", phase)
-        .acting(Action::Gears(memoryless(joint, move |m| {
+        .motor_torque(joint, move |m| {
             let q = m.q[joint];
             let here = match form {
                 0 => (q + phase).cos(),
@@ -178,7 +171,7 @@ pub(super) fn position_friction(scale: &Scale<'_>, random: &mut Random) -> Distu
                 _ => ((q - tight) / 0.2).tanh(),
             };
             amplitude * here * m.sign[joint]
-        })))
+        })
 }
 
 pub(super) fn warm_up(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
@@ -187,13 +180,13 @@ pub(super) fn warm_up(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let coulomb = random.between(0.0, 0.4) * scale.plant.coulomb[joint];
     let viscous = random.log_between(0.15, 1.0) * scale.plant.viscous[joint];
     let half_speed = (0.5 * scale.fastest[joint]).max(1e-3);
-    let forms = ["exponential", "heated_by_friction", "two_masses"];
-    let form = random.below(forms.len());
-    Disturbance::at_joint("warm_up", forms[form], joint)
+    let (form, name) = random.form(["exponential", "heated_by_friction", "two_masses"]);
+    let mut warm: Option<f64> = None;
+    Disturbance::at_joint("warm_up", name, joint)
         .with("time_constant", constant)
         .with("coulomb", coulomb)
         .with("viscous", viscous)
-        .acting(Action::Gears(with_state(joint, None, move |warm: &mut Option<f64>, m| {
+        .motor_torque(joint, move |m| {
             let v = m.rate[joint];
             let cold = match form {
                 1 => {
@@ -207,7 +200,7 @@ pub(super) fn warm_up(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
                 _ => (-m.t / constant).exp(),
             };
             cold * (coulomb * m.sign[joint] + viscous * v)
-        })))
+        })
 }
 
 pub(super) fn brake_drag(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
@@ -215,14 +208,13 @@ pub(super) fn brake_drag(scale: &Scale<'_>, random: &mut Random) -> Disturbance 
     let drag = random.log_between(0.15, 1.0) * scale.plant.coulomb[joint];
     let start = random.between(0.05, 0.6) * scale.period_s;
     let end = start + random.between(0.1, 0.3) * scale.period_s;
-    let forms = ["gated", "fading", "ramp"];
-    let form = random.below(forms.len());
-    Disturbance::at_joint("brake_drag", forms[form], joint)
+    let (form, name) = random.form(["gated", "fading", "ramp"]);
+    Disturbance::at_joint("brake_drag", name, joint)
         .with("drag", drag)
         .with("t_start_s", start)
         .with("t_end_s", end)
         .within([start, end])
-        .acting(Action::Gears(memoryless(joint, move |m: &Moment| {
+        .motor_torque(joint, move |m| {
             if !(start..end).contains(&m.in_period) {
                 return 0.0;
             }
@@ -233,5 +225,5 @@ pub(super) fn brake_drag(scale: &Scale<'_>, random: &mut Random) -> Disturbance 
                 _ => 1.0,
             };
             drag * closed * m.sign[joint]
-        })))
+        })
 }

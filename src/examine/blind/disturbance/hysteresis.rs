@@ -3,11 +3,9 @@
 //! Dahl 1968; C. Canudas de Wit et al. 1995 (`LuGre`); F. Al-Bender, V. Lampaert, J. Swevers
 //! 2005 (Maxwell slip).
 
-use super::super::action::Action;
 use super::super::fault::Disturbance;
 use super::super::random::Random;
 use super::super::scale::Scale;
-use super::laws::with_state;
 
 /// Maxwell elements: share of the friction, and relative distance at which each slips.
 const ELEMENTS: [[f64; 2]; 4] = [[0.4, 0.4], [0.3, 0.9], [0.2, 1.6], [0.1, 3.0]];
@@ -15,10 +13,11 @@ const ELEMENTS: [[f64; 2]; 4] = [[0.4, 0.4], [0.3, 0.9], [0.2, 1.6], [0.1, 3.0]]
 pub(super) fn presliding(scale: &Scale<'_>, random: &mut Random) -> Disturbance {
     let joint = scale.any_joint(random);
     let distance = random.log_between(1.5e-3, 30e-3);
-    let forms = ["dahl", "lugre", "maxwell_slip", "stiff_then_soft"];
-    let form = random.below(forms.len());
-    Disturbance::at_joint("presliding", forms[form], joint).with("distance", distance).acting(
-        Action::Gears(with_state(joint, [0.0; ELEMENTS.len()], move |z, m| {
+    let (form, name) = random.form(["dahl", "lugre", "maxwell_slip", "stiff_then_soft"]);
+    let mut z = [0.0_f64; ELEMENTS.len()];
+    Disturbance::at_joint("presliding", name, joint).with("distance", distance).motor_torque(
+        joint,
+        move |m| {
             let v = m.rate[joint];
             let step = v * m.dt;
             let before = z[0];
@@ -46,6 +45,6 @@ pub(super) fn presliding(scale: &Scale<'_>, random: &mut Random) -> Disturbance 
             };
             let damping = if form == 1 { 0.02 * (z[0] - before) / m.dt.max(1e-9) } else { 0.0 };
             m.coulomb[joint] * (bristles + damping.clamp(-0.2, 0.2) - m.sign[joint])
-        })),
+        },
     )
 }

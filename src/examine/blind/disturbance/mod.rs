@@ -146,7 +146,7 @@ mod tests {
                 nominal: &self.plant,
                 plant: &self.plant,
                 workspace: &self.workspace,
-                trust: Trust::Commissioned,
+                trust: Trust::COMMISSIONED,
                 period_s: 4.0,
                 ratio: [100.0; MAX_DOF],
                 rms: peak.map(|x| 0.5 * x),
@@ -163,16 +163,17 @@ mod tests {
     fn every_effect_shows_in_several_forms() {
         let bench = bench();
         let (scale, plain) = (bench.scale(), bench.run(Vec::new()));
-        let mut forms: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+        let mut forms: BTreeMap<&str, BTreeSet<String>> = BTreeMap::new();
         for (id, draw) in TORQUE.iter().chain(&POWER) {
             for k in 0..DRAWS {
                 let disturbance = draw(&scale, &mut Random::new(2, k as u64, id));
-                assert_eq!(disturbance.id, *id);
-                if !forms.entry(id).or_default().insert(disturbance.form) {
+                let form = disturbance.truth.form.clone();
+                assert_eq!(disturbance.truth.id, *id);
+                if !forms.entry(id).or_default().insert(form.clone()) {
                     continue;
                 }
                 let rows = bench.run(vec![&disturbance]);
-                let name = format!("{id} {}", disturbance.form);
+                let name = format!("{id} {form}");
                 let mut changed = 0.0;
                 for (row, plain) in rows.iter().zip(&plain) {
                     assert!(row.power.is_finite(), "{name}");
@@ -201,12 +202,13 @@ mod tests {
         let mut checked = 0;
         for k in 0..60 {
             let disturbance = sensing::time_delay(&scale, &mut Random::new(3, k, "delay"));
-            if disturbance.form != "constant" || !disturbance.joints.is_empty() {
+            let truth = &disturbance.truth;
+            if truth.form != "constant" || !truth.joints.is_empty() {
                 continue;
             }
             checked += 1;
             let late = bench.run(vec![&disturbance]);
-            let steps = disturbance.parameters[0].value / 0.01;
+            let steps = truth.parameters[0].value / 0.01;
             let (whole, part) = (steps.floor() as usize, steps.fract());
             // The start has no influence on the second period. Only friction makes the torque of
             // axis 2 jump, and interpolation between rows of 10 ms smears these jumps.

@@ -20,9 +20,9 @@ pub struct DiagnosisError {
 #[derive(Clone, Debug, Deserialize)]
 pub(super) struct Diagnosis {
     pub(super) verdict: Verdict,
-    pub(super) effects: Vec<Said>,
+    pub(super) effects: Vec<NamedEffect>,
     #[serde(default)]
-    pub(super) candidates: Vec<Said>,
+    pub(super) candidates: Vec<NamedEffect>,
     #[serde(default, rename = "where")]
     places: Vec<Place>,
     #[serde(default)]
@@ -66,7 +66,7 @@ impl Verdict {
 
 /// A diagnosed effect.
 #[derive(Clone, Debug, Deserialize)]
-pub(super) struct Said {
+pub(super) struct NamedEffect {
     pub(super) id: String,
     #[serde(default)]
     pub(super) joints: Vec<usize>,
@@ -113,7 +113,7 @@ impl Diagnosis {
     }
 
     /// The diagnosed effects, without link parameters.
-    pub(super) fn named(&self) -> impl Iterator<Item = &Said> {
+    pub(super) fn named(&self) -> impl Iterator<Item = &NamedEffect> {
         self.effects.iter().filter(|said| said.id != "link_parameters")
     }
 
@@ -142,7 +142,7 @@ impl Diagnosis {
     }
 }
 
-impl Said {
+impl NamedEffect {
     /// All ids of its equivalence class.
     pub(super) fn ids(&self) -> Vec<&str> {
         let mut ids = vec![self.id.as_str()];

@@ -11,7 +11,7 @@ use serde_json::Value;
 
 use super::label::{Kind, Label};
 use diagnosis::Diagnosis;
-use score::{Outcome, Score, score};
+use score::{Score, score};
 
 pub use diagnosis::DiagnosisError;
 
@@ -132,13 +132,10 @@ pub fn grade(
         let score = score(label, &Diagnosis::read(&label.case, diagnosis)?);
         let truth = truth(label);
         if score.detectable || label.effects.is_empty() {
-            *confusion
-                .entry(truth.clone())
-                .or_default()
-                .entry(score.outcome.name())
-                .or_default() += 1;
+            let row = confusion.entry(truth.clone()).or_default();
+            *row.entry(score.outcome.name()).or_default() += 1;
         }
-        if score.outcome == Outcome::WrongName {
+        if score.is_wrong() {
             wrong.push(Wrong { case: label.case.clone(), truth, said: score.said.clone() });
         }
         scores.push(score);
@@ -154,9 +151,7 @@ pub fn grade(
         confusion,
         rates,
         reliability: reliability(&scores),
-        shrink_of_oracle: median(
-            single(&scores).filter_map(|score| score.of_oracle).collect::<Vec<f64>>(),
-        ),
+        shrink_of_oracle: median(single(&scores).filter_map(|score| score.of_oracle).collect()),
         wrong,
     })
 }
@@ -191,60 +186,32 @@ fn single(scores: &[Score]) -> impl Iterator<Item = &Score> {
 fn rates(scores: &[Score]) -> Vec<Rate> {
     use Asked::{AtLeast, AtMost};
     let of_kind = |kind: Kind| scores.iter().filter(move |score| score.kind == kind);
-    let detectable = |kind: Kind| of_kind(kind).filter(|score| score.detectable);
-    let two = || detectable(Kind::Two);
-    let outside = || detectable(Kind::Outside);
+    let named = |kind: Kind| of_kind(kind).map(|score| score.outcome.names());
+    let one = || single(scores);
+    let two = || of_kind(Kind::Two).filter(|score| score.detectable);
+    let outside = of_kind(Kind::Outside).filter(|score| score.detectable);
+    let parameters = scores.iter().flat_map(|score| score.parameters.iter().copied());
     vec![
-        rate(
-            "healthy_named",
-            AtMost(0.02),
-            of_kind(Kind::Healthy).map(|score| score.outcome.names()),
-        ),
-        rate(
-            "parameters_only_named",
-            AtMost(0.02),
-            of_kind(Kind::ParametersOnly).map(|score| score.outcome.names()),
-        ),
-        rate(
-            "one_right_or_class",
-            AtLeast(0.92),
-            single(scores).map(|score| score.outcome.is_right()),
-        ),
-        rate(
-            "one_wrong_name",
-            AtMost(0.02),
-            single(scores).map(|score| score.outcome == Outcome::WrongName),
-        ),
-        rate("one_joints", AtLeast(0.90), single(scores).filter_map(|score| score.joints)),
-        rate("one_place", AtLeast(0.90), single(scores).filter_map(|score| score.place)),
-        rate("line", AtLeast(0.90), single(scores).filter_map(|score| score.line)),
-        rate(
-            "parameters_within_3_sd",
-            AtLeast(0.93),
-            scores.iter().flat_map(|score| score.parameters.iter().copied()),
-        ),
-        rate("two_both", AtLeast(0.70), two().map(|score| score.outcome.is_right())),
-        rate(
-            "two_wrong_name",
-            AtMost(0.03),
-            two().map(|score| score.outcome == Outcome::WrongName),
-        ),
-        rate("outside_abstains", AtLeast(0.95), outside().map(|score| score.outcome.abstains())),
+        rate("healthy_named", AtMost(0.02), named(Kind::Healthy)),
+        rate("parameters_only_named", AtMost(0.02), named(Kind::ParametersOnly)),
+        rate("one_right_or_class", AtLeast(0.92), one().map(Score::is_right)),
+        rate("one_wrong_name", AtMost(0.02), one().map(Score::is_wrong)),
+        rate("one_joints", AtLeast(0.90), one().filter_map(|score| score.joints)),
+        rate("one_place", AtLeast(0.90), one().filter_map(|score| score.place)),
+        rate("line", AtLeast(0.90), one().filter_map(|score| score.line)),
+        rate("parameters_within_3_sd", AtLeast(0.93), parameters),
+        rate("two_both", AtLeast(0.70), two().map(Score::is_right)),
+        rate("two_wrong_name", AtMost(0.03), two().map(Score::is_wrong)),
+        rate("outside_abstains", AtLeast(0.95), outside.map(Score::abstains)),
     ]
 }
 
 fn left_out_rates(scores: &[Score]) -> Vec<Rate> {
+    use Asked::{AtLeast, AtMost};
+    let unknown_or_class = single(scores).map(|score| score.abstains() || score.is_right());
     vec![
-        rate(
-            "left_out_unknown_or_class",
-            Asked::AtLeast(0.92),
-            single(scores).map(|score| score.outcome.abstains() || score.outcome.is_right()),
-        ),
-        rate(
-            "left_out_wrong_name",
-            Asked::AtMost(0.08),
-            single(scores).map(|score| score.outcome == Outcome::WrongName),
-        ),
+        rate("left_out_unknown_or_class", AtLeast(0.92), unknown_or_class),
+        rate("left_out_wrong_name", AtMost(0.08), single(scores).map(Score::is_wrong)),
     ]
 }
 

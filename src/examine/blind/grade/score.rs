@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::super::label::{Kind, Label, Truth};
-use super::diagnosis::{Diagnosis, Said, Verdict};
+use super::diagnosis::{Diagnosis, NamedEffect, Verdict};
 
 /// Least detectability of a graded effect \[nats\].
 pub(super) const DETECTABLE_NATS: f64 = 10.0;
@@ -37,19 +37,9 @@ impl Outcome {
         }
     }
 
-    /// Whether exactly the true effects were named, possibly as a class.
-    pub(super) fn is_right(self) -> bool {
-        matches!(self, Outcome::RightName | Outcome::RightClass)
-    }
-
     /// Whether an effect was named.
     pub(super) fn names(self) -> bool {
         !matches!(self, Outcome::Verdict(_))
-    }
-
-    /// Whether the outcome is an abstention.
-    pub(super) fn abstains(self) -> bool {
-        matches!(self, Outcome::Verdict(verdict) if verdict.abstains())
     }
 }
 
@@ -70,16 +60,32 @@ pub(super) struct Score {
     pub(super) said: String,
 }
 
+impl Score {
+    /// Whether exactly the true effects were named, possibly as a class.
+    pub(super) fn is_right(&self) -> bool {
+        matches!(self.outcome, Outcome::RightName | Outcome::RightClass)
+    }
+
+    pub(super) fn is_wrong(&self) -> bool {
+        self.outcome == Outcome::WrongName
+    }
+
+    /// Whether the diagnosis abstains from naming an effect.
+    pub(super) fn abstains(&self) -> bool {
+        matches!(self.outcome, Outcome::Verdict(verdict) if verdict.abstains())
+    }
+}
+
 /// Scores a case.
 pub(super) fn score(label: &Label, diagnosis: &Diagnosis) -> Score {
     let truths: Vec<&Truth> = match label.kind {
         Kind::One | Kind::Two | Kind::Power | Kind::Motion => label.effects.iter().collect(),
         Kind::Healthy | Kind::ParametersOnly | Kind::Outside => Vec::new(),
     };
-    let named: Vec<&Said> = diagnosis.named().collect();
+    let named: Vec<&NamedEffect> = diagnosis.named().collect();
     let found = |truth: &Truth| named.iter().copied().find(|said| accepts(truth, said));
     let wrong = named.iter().any(|said| !truths.iter().any(|truth| accepts(truth, said)));
-    let right: Vec<(&Truth, &Said)> =
+    let right: Vec<(&Truth, &NamedEffect)> =
         truths.iter().filter_map(|truth| Some((*truth, found(truth)?))).collect();
     let all_right = !truths.is_empty() && right.len() == truths.len();
     let by_name = right.iter().all(|(truth, said)| {
@@ -98,20 +104,13 @@ pub(super) fn score(label: &Label, diagnosis: &Diagnosis) -> Score {
     };
     let detectable = !label.effects.is_empty()
         && label.effects.iter().all(|truth| truth.nats >= DETECTABLE_NATS);
-    let joints = (right.len() == truths.len())
-        .then(|| {
-            let of_joints: Vec<bool> = right
-                .iter()
-                .filter(|(truth, _)| !truth.joints.is_empty())
-                .map(|(truth, said)| same_joints(truth, said))
-                .collect();
-            (!of_joints.is_empty()).then(|| of_joints.into_iter().all(|same| same))
-        })
-        .flatten();
+    let mut at_joints = right.iter().filter(|(truth, _)| !truth.joints.is_empty()).peekable();
+    let joints = (right.len() == truths.len() && at_joints.peek().is_some())
+        .then(|| at_joints.all(|(truth, said)| same_joints(truth, said)));
     let clear = label.place.filter(|_| label.share.is_some_and(|share| share >= CLEAR_SHARE));
-    let place = (!truths.is_empty() && !named.is_empty())
-        .then(|| clear.map(|joint| diagnosis.place() == Some(joint)))
-        .flatten();
+    let place = clear
+        .filter(|_| !truths.is_empty() && !named.is_empty())
+        .map(|joint| diagnosis.place() == Some(joint));
     let line = (!label.lines.is_empty())
         .then(|| diagnosis.lines().any(|line| label.lines.contains(&line)));
     let parameters = right
@@ -142,14 +141,14 @@ pub(super) fn score(label: &Label, diagnosis: &Diagnosis) -> Score {
 }
 
 /// Whether a diagnosed effect matches the truth by its name or its class.
-fn accepts(truth: &Truth, said: &Said) -> bool {
+fn accepts(truth: &Truth, said: &NamedEffect) -> bool {
     let ids = said.ids();
     ids.len() <= LARGEST_CLASS
         && ids.iter().any(|id| *id == truth.id || truth.equivalents.iter().any(|other| other == id))
 }
 
 /// A wrist coupling may be diagnosed at one of its joints; otherwise the joints have to be equal.
-fn same_joints(truth: &Truth, said: &Said) -> bool {
+fn same_joints(truth: &Truth, said: &NamedEffect) -> bool {
     let set = |joints: &[usize]| joints.iter().copied().collect::<BTreeSet<usize>>();
     let (there, told) = (set(&truth.joints), set(&said.joints));
     if truth.id == "wrist_coupling" {
@@ -159,7 +158,7 @@ fn same_joints(truth: &Truth, said: &Said) -> bool {
 }
 
 /// Whether each graded parameter is within its tolerance.
-fn within(truth: &Truth, said: &Said) -> Vec<bool> {
+fn within(truth: &Truth, said: &NamedEffect) -> Vec<bool> {
     let graded = truth.parameters.iter().filter(|parameter| parameter.graded);
     graded
         .filter_map(|parameter| match said.parameter(&parameter.name, parameter.joint) {
@@ -186,7 +185,7 @@ fn of_oracle(label: &Label, diagnosis: &Diagnosis) -> Option<f64> {
         .and_then(|oracle| Some(diagnosis.shrink()? / oracle))
 }
 
-fn said(named: &[&Said], diagnosis: &Diagnosis) -> String {
+fn said(named: &[&NamedEffect], diagnosis: &Diagnosis) -> String {
     if named.is_empty() {
         return diagnosis.verdict.name().into();
     }
