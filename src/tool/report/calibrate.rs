@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use serde_json::{Value, json};
 
+use super::json::interval;
 use crate::learn::calibrate::{Calibrated, Found};
 use crate::retime::energy::plausible::{Interval, Plausibility};
 
@@ -16,11 +17,10 @@ const FAR_OFF: f64 = 10.0;
 
 /// The result as JSON; `path` is the robot's file.
 pub fn json(calibrated: &Calibrated, path: &str) -> Value {
-    let interval = |interval: &Interval| json!([interval.low, interval.high]);
     let intervals = |of: &Plausibility| {
         json!({
-            "energy_j": interval(&of.energy_j),
-            "motion_energy_j": interval(&of.motion_energy_j),
+            "energy_j": interval(of.energy_j),
+            "motion_energy_j": interval(of.motion_energy_j),
             "energy_median_j": of.energy_j.median,
             "motion_energy_median_j": of.motion_energy_j.median,
         })
