@@ -256,7 +256,7 @@ fn suppress(job: &Job<'_>, group: &Group, read: &[Arc<ParsedFile>], findings: &m
             let codes = suppression.codes.iter().enumerate();
             let unused = codes.filter(|(code, _)| !used.contains(&(*file, index, *code)));
             let unused: Vec<&str> = unused.map(|(_, code)| code.as_str()).collect();
-            unused_suppression::judge(job, &ALL, suppression, &unused, findings);
+            unused_suppression::report_unused(job, &ALL, suppression, &unused, findings);
         }
     }
 }

@@ -19,7 +19,7 @@ use crate::retime::motion::{Options, Step, replay};
 use crate::retime::path::joint_path::{DOF, Joints};
 
 /// Maximum distance of equal joint positions, rad.
-const SAME: f64 = 1e-4;
+const POSITION_TOLERANCE: f64 = 1e-4;
 /// Maximum number of later runs whose start a change may affect.
 const MAX_RUNS_BEHIND: usize = 3;
 /// Maximum number of executions of a statement for which a saving is computed.
@@ -132,8 +132,8 @@ pub fn difference(
     let plausible_j = match &cycle.robots {
         // A change that costs energy with the nominal robot is not reported anyway.
         Some(robots) if saved.energy_j() > 0.0 => {
-            let sums = sums(model, cycle, &parts, &rests);
-            let changes = robots.changes(model, &sums);
+            let saved_moments = saved_moments(model, cycle, &parts, &rests);
+            let changes = robots.changes(model, &saved_moments);
             changes.iter().map(|change| saved.energy_j() + change.energy_j()).collect()
         }
         _ => Vec::new(),
@@ -142,7 +142,7 @@ pub fn difference(
 }
 
 /// Energy moments of the saving, summed over the replayed parts.
-fn sums(model: &Model, cycle: &Cycle, parts: &[Replayed], rests: &[Rest]) -> Moments {
+fn saved_moments(model: &Model, cycle: &Cycle, parts: &[Replayed], rests: &[Rest]) -> Moments {
     let mut sums = Moments::none(model);
     for Replayed { range, after, .. } in parts {
         for event in &cycle.simulation.events[range.clone()] {
@@ -273,7 +273,9 @@ fn extended_window(
         }
         let was = last_run(&simulation.events[..=last])?.end;
         let is = last_run(&after.events).map_or(start, |run| run.end);
-        if largest_difference(&was, &is) <= SAME || last + 1 == simulation.events.len() {
+        if largest_difference(&was, &is) <= POSITION_TOLERANCE
+            || last + 1 == simulation.events.len()
+        {
             return Some((first..=last, after, rest));
         }
         last = next_run(simulation, last);
@@ -361,11 +363,11 @@ fn saved_time(
     let mut windows = replayed.iter().peekable();
     while index < simulation.events.len() {
         if let Some(part) = windows.next_if(|part| *part.range.start() == index) {
-            more.extend(part.after.events.iter().filter_map(|event| clock.passes(event, true)));
+            more.extend(part.after.events.iter().filter_map(|event| clock.advance(event, true)));
             clock.time += part.longer_s;
             index = part.range.end() + 1;
         } else {
-            more.extend(clock.passes(&simulation.events[index], false));
+            more.extend(clock.advance(&simulation.events[index], false));
             index += 1;
         }
     }
@@ -380,7 +382,7 @@ struct Clock<'c> {
 
 impl Clock<'_> {
     /// Advances by an event; returns the additional rest of a wait.
-    fn passes(&mut self, event: &Event, replayed: bool) -> Option<Rest> {
+    fn advance(&mut self, event: &Event, replayed: bool) -> Option<Rest> {
         let mut duration = event.duration;
         let mut more = None;
         if let What::Wait(wait) = &event.what

@@ -12,7 +12,7 @@ use crate::retime::path::joint_path::{DOF, Joints};
 
 const MAX_ROUNDS: usize = 40;
 /// Maximum distance of equal joint positions, rad.
-const SAME: f64 = 1e-4;
+const POSITION_TOLERANCE: f64 = 1e-4;
 /// Rounding of an energy, J.
 const ROUNDING: f64 = 1e-6;
 
@@ -176,7 +176,8 @@ fn same_process(before: &Cycle, after: &Cycle) -> bool {
         runs.filter(|run| run.problem.is_some()).count()
     };
     let (a, b) = (places(before), places(after));
-    let near = |(a, b): (&Joints, &Joints)| (0..DOF).all(|j| (a[j] - b[j]).abs() <= SAME);
+    let near =
+        |(a, b): (&Joints, &Joints)| (0..DOF).all(|j| (a[j] - b[j]).abs() <= POSITION_TOLERANCE);
     actions(before) == actions(after)
         && a.len() == b.len()
         && a.iter().zip(&b).all(near)

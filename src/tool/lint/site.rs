@@ -82,15 +82,15 @@ impl Goal {
     /// Whether two goals are equal.
     pub fn is_same(&self, other: &Goal) -> bool {
         /// m and rad.
-        const SAME: f64 = 1e-5;
+        const TOLERANCE: f64 = 1e-5;
         match (self, other) {
             (Goal::Joints(a), Goal::Joints(b)) => {
-                a.iter().zip(b).all(|(a, b)| (a - b).abs() < SAME)
+                a.iter().zip(b).all(|(a, b)| (a - b).abs() < TOLERANCE)
             }
             (Goal::Pose(a, conf), Goal::Pose(b, other)) => {
                 conf == other
-                    && (a.translation.vector - b.translation.vector).norm() < SAME
-                    && a.rotation.angle_to(&b.rotation) < SAME
+                    && (a.translation.vector - b.translation.vector).norm() < TOLERANCE
+                    && a.rotation.angle_to(&b.rotation) < TOLERANCE
             }
             _ => false,
         }

@@ -25,7 +25,7 @@ pub struct Basis {
 /// The JSON of the stable interface.
 #[must_use]
 pub fn json(found: &Diagnosis, basis: &Basis) -> Value {
-    let all = |of: &[Said]| -> Vec<Value> { of.iter().map(said).collect() };
+    let all = |of: &[Said]| -> Vec<Value> { of.iter().map(effect).collect() };
     let generic = found.anything.iter().map(|of| {
         json!({
             "id": of.id,
@@ -113,7 +113,7 @@ fn interval(of: &Interval) -> Value {
     json!({"value": 100.0 * of.value, "low": 100.0 * of.low, "high": 100.0 * of.high})
 }
 
-fn said(of: &Said) -> Value {
+fn effect(of: &Said) -> Value {
     let parameters = of
         .parameters
         .iter()
@@ -186,7 +186,7 @@ pub fn called(of: &Said) -> String {
 }
 
 /// The same with its probability.
-fn weighed(of: &Said) -> String {
+fn with_probability(of: &Said) -> String {
     format!("{}, probability {:.2}, {:.0} nats", called(of), of.probability, of.nats)
 }
 
@@ -204,7 +204,7 @@ pub fn text(found: &Diagnosis, basis: &Basis) -> String {
     let mut out = String::new();
     let _ = writeln!(out, "{}", sentence(found.verdict));
     for of in &found.effects {
-        let _ = writeln!(out, "\nfound: {}", weighed(of));
+        let _ = writeln!(out, "\nfound: {}", with_probability(of));
         if of.class.len() > 1 {
             let _ = writeln!(out, "  cannot be told apart: {}", of.class.join(", "));
         }
@@ -222,7 +222,7 @@ pub fn text(found: &Diagnosis, basis: &Basis) -> String {
         out.push('\n');
     }
     for of in &found.candidates {
-        let _ = writeln!(out, "considered: {}", weighed(of));
+        let _ = writeln!(out, "considered: {}", with_probability(of));
     }
     for text in unknown(found) {
         let _ = writeln!(out, "unknown: {text}");

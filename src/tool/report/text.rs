@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::mark::mark;
 use super::place::Places;
-use super::plausible::{energies, saving};
+use super::plausible::{energies, is_rewritten, saving};
 use super::simulated::{Simulated, Step, StepKind};
 use super::table::{Align, table};
 use crate::arm::robot::prior::is_mass_known;
@@ -226,10 +226,6 @@ fn headline(model: &Model, retrofit: &Retrofit) -> String {
         1e3 * worst.polygon_m,
         worst.endpoint_error_rad,
     )
-}
-
-fn is_rewritten(retrofit: &Retrofit) -> bool {
-    retrofit.segments.iter().any(|segment| segment.rewritten)
 }
 
 /// Cost of the guards, lower limits, and possible savings by settings of the controller.

@@ -37,7 +37,7 @@ use crate::rapid::builtins::MoveForm;
 rule!("EW404", "near-singular-line", Path, Robot, Warning, "near_singular_line.rs");
 
 /// Sine of the angle of axis 5 below which it is near zero: 5°.
-const NEAR: f64 = 0.0872;
+const MAX_SINE: f64 = 0.0872;
 /// Names of the paces that axes set.
 const BY_AXES: [&str; 4] = ["joint-speed", "acceleration", "torque", "estimated"];
 /// Turn of axis 4 or 6 that only a singularity asks for, rad.
@@ -74,5 +74,5 @@ fn is_near(context: &Context<'_>, step: usize) -> bool {
     };
     let turns = [3, 5].iter().any(|axis| (leg.end[*axis] - leg.start[*axis]).abs() > MIN_TURN);
     let by_axes = BY_AXES.contains(&record.pace.name());
-    by_axes && turns && (0..=INTERVALS).map(wrist).fold(1.0, f64::min) < NEAR
+    by_axes && turns && (0..=INTERVALS).map(wrist).fold(1.0, f64::min) < MAX_SINE
 }

@@ -40,9 +40,9 @@ rule!("EW204", "reorientation-limited-line", Speed, Text, Info, "reorientation_l
 const PREDEFINED: f64 = 8.726_646;
 /// Times that turning takes longer than the way.
 const MIN_RATIO: f64 = 2.0;
-/// Smallest turn that is told, rad.
+/// Smallest turn that is reported, rad.
 const MIN_TURN: f64 = 0.5;
-/// Least time of turning that is told, s.
+/// Least time of turning that is reported, s.
 const MIN_TIME: f64 = 0.15;
 /// Shortest way of what is still a line and no turn on the spot, m.
 const MIN_WAY: f64 = 0.01;

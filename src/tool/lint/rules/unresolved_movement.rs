@@ -37,9 +37,9 @@ use crate::rapid::text::Span;
 rule!("EW704", "unresolved-movement", Program, Text, Info, "unresolved_movement.rs");
 
 /// End of the reason why a name says nothing.
-const MISSING: &str = "is not declared in the files given";
+const UNDECLARED: &str = "is not declared in the files given";
 /// End of the reason why a place that the robot reads of itself is not known.
-const OWN: &str = "depends on where the robot is";
+const DEPENDS_ON_POSITION: &str = "depends on where the robot is";
 /// Names that may be missing without a whole module being it.
 const MAX_SEPARATE: usize = 3;
 
@@ -63,10 +63,11 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         }
         let Some(note) = context.unresolved.iter().find(|note| note.span == span) else { continue };
         // One remark for one cause.
-        if !note.reason.ends_with(OWN) && reported.insert(&note.reason) {
+        if !note.reason.ends_with(DEPENDS_ON_POSITION) && reported.insert(&note.reason) {
             let message = format!("{} can't be worked out: {}", site.name, note.reason);
             let finding = Finding::new(&RULE, span, message);
-            let list = if note.reason.ends_with(MISSING) { &mut missing } else { &mut *findings };
+            let list =
+                if note.reason.ends_with(UNDECLARED) { &mut missing } else { &mut *findings };
             list.push(finding);
         }
     }

@@ -36,11 +36,11 @@ use super::super::suppress::Suppression;
 
 rule!("EW001", "unused-suppression", Comments, Text, Warning, "unused_suppression.rs");
 
-/// The engine knows what was suppressed, and asks `judge`.
+/// The engine knows what was suppressed, and asks `report_unused`.
 fn check(_: &Context<'_>, _: &mut Vec<Finding>) {}
 
 /// Adds a finding for the codes of a comment that took nothing back, as far as their rules ran.
-pub(crate) fn judge(
+pub(crate) fn report_unused(
     job: &Job<'_>,
     rules: &[&'static Rule],
     suppression: &Suppression,

@@ -18,7 +18,7 @@ use crate::tool::report::svg::{Curve, Plot, Size};
 /// Size of the plots, px.
 const SIZE: Size = Size { width: 620.0, height: 220.0 };
 /// Minimum share of the squared residuals for a joint's regimes to be shown, %.
-const SHOWN: f64 = 5.0;
+const MIN_PERCENT: f64 = 5.0;
 /// Style classes of the curves: original model, refitted model, model with effects.
 const MODELS: [&str; 3] = ["j2", "j4", "j3"];
 
@@ -207,7 +207,7 @@ fn cells(of: &Attribution) -> Vec<Value> {
     for joint in 0..joints {
         let (gap, taken) = of.of_joint(joint);
         rows.push(row(joint, "all", gap, &taken));
-        if 100.0 * gap >= SHOWN {
+        if 100.0 * gap >= MIN_PERCENT {
             for cell in of.cells.iter().filter(|cell| cell.joint == joint) {
                 rows.push(row(joint, &cell.regime(), cell.gap, &cell.taken));
             }
