@@ -4,23 +4,22 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{Isometry3, Vector3};
 
+use super::evaluate::{Change, Cycle, Difference, difference, evaluate};
 use super::flow::{Class, Flow, Next, Place, Through};
 use super::group::Group;
-use super::quiet::Quiet;
-use super::saving::Weighed;
+use super::saving::Evaluation;
 use super::site::{Site, compact, constant, facts_of, site};
+use super::statements::{called_name, routines};
 use super::system::System;
-use super::trace::{self, Action, Recording, TraceStep, executions};
-use super::weigh::{Change, Cycle, Difference, difference, weigh};
+use super::trace::{self, Recording, TraceStep, executions};
 use crate::arm::robot::Model;
 use crate::rapid::ir::exec::Note;
-use crate::rapid::ir::graph::Step as GraphStep;
-use crate::rapid::ir::hir::{Call, Callee, Expr, Stmt, StmtKind};
-use crate::rapid::ir::movement::Target;
+use crate::rapid::ir::hir::{Call, Expr, Stmt, StmtKind};
+use crate::rapid::ir::movement::{Movement, Settings, Target};
 use crate::rapid::ir::program::{Program, RoutineId};
 use crate::rapid::ir::value::Datum;
 use crate::rapid::text::{SourceFile, Span};
-use crate::retime::motion::timeline::{MoveRecord, Run, What};
+use crate::retime::motion::timeline::{MoveRecord, Run};
 use crate::retime::path::Leg;
 
 /// The input of rules: one program.
@@ -41,8 +40,6 @@ pub struct Context<'c> {
     pub unresolved: &'c [Note],
     /// Its control flow.
     pub flow: Flow<'c>,
-    /// The data names of the program.
-    pub quiet: Quiet<'c>,
     /// Its movement statements, in the order of the files.
     pub sites: Vec<Site<'c>>,
     /// The configuration of the controller, from a backup.
@@ -51,7 +48,7 @@ pub struct Context<'c> {
     /// The movements that can precede each movement, regardless of statements between.
     before: Vec<Vec<usize>>,
     /// Movements before which the robot position is unknown.
-    starts: BTreeSet<usize>,
+    unknown_starts: BTreeSet<usize>,
 }
 
 /// The corner at the goal of a movement, the worst case of all its executions.
@@ -75,7 +72,7 @@ pub struct Corner {
 }
 
 /// Maximum number of movements per wait or output in a program with a process.
-const MOST_MOVES: usize = 12;
+const MAX_MOVES: usize = 12;
 /// Maximum cosine between tool axis and a way across it: tools may lean by 30°.
 const ACROSS: f64 = 0.5;
 /// Minimum cosine between tool axis and a way in or out.
@@ -102,43 +99,36 @@ impl<'c> Context<'c> {
         let entry = program.entry(&group.entry);
         let (trace, unresolved): (Vec<TraceStep<'c>>, &[Note]) = match (cycle, recording) {
             (Some(cycle), _) => {
-                (trace::of_simulation(&cycle.simulation), &cycle.simulation.unresolved)
+                (trace::of_events(&cycle.simulation.events), &cycle.simulation.unresolved)
             }
             (None, Some(recording)) => (recording.trace(), &recording.notes),
             (None, None) => (Vec::new(), &[]),
         };
         let flow = Flow::new(program, entry);
-        let quiet = Quiet::new(program);
         let executed = executions(&trace);
+        let compact: BTreeMap<RoutineId, BTreeSet<Span>> =
+            routines(program).map(|(id, routine)| (id, compact(routine))).collect();
         let mut sites = Vec::new();
-        for (routine, graph, reachable) in flow.graphs() {
-            let alone = compact(program.routine(routine));
-            for (node, content) in graph.nodes.iter().enumerate() {
-                let GraphStep::Statement(stmt) = content.step else { continue };
-                let StmtKind::Call(call) = &stmt.kind else { continue };
-                let found = site(program, &quiet, (routine, node), stmt, call);
-                let Some(mut found) = found else { continue };
-                found.reachable = reachable[node];
-                found.compact = alone.contains(&stmt.span);
-                found.executions = executed.get(&stmt.span).cloned().unwrap_or_default();
-                complete(&mut found, &trace);
-                sites.push(found);
-            }
+        for (place, stmt, reachable) in flow.statements() {
+            let StmtKind::Call(call) = &stmt.kind else { continue };
+            let site = site(program, &flow.data_names, place, stmt, call);
+            let Some(mut site) = site else { continue };
+            site.reachable = reachable;
+            site.compact = compact[&place.0].contains(&stmt.span);
+            site.executions = executed.get(&stmt.span).cloned().unwrap_or_default();
+            complete(&mut site, &trace);
+            sites.push(site);
         }
         sites.sort_by_key(|site| site.stmt.span);
         let by_place: BTreeMap<Place, usize> =
             sites.iter().enumerate().map(|(index, site)| (site.place, index)).collect();
         let mut before = vec![Vec::new(); sites.len()];
         for (index, site) in sites.iter().enumerate() {
-            for next in flow.following(site.place, Through::All) {
-                if let Next::Move(place) = next
-                    && let Some(next) = by_place.get(&place)
-                {
-                    before[*next].push(index);
-                }
+            for next in moves_after(&flow, &by_place, site.place) {
+                before[next].push(index);
             }
         }
-        let starts = starts(&flow, &by_place);
+        let unknown_starts = unknown_starts(program, &flow, &by_place);
         Context {
             files,
             program,
@@ -148,19 +138,18 @@ impl<'c> Context<'c> {
             trace,
             unresolved,
             flow,
-            quiet,
             sites,
             system: group.system.as_ref(),
             by_place,
             before,
-            starts,
+            unknown_starts,
         }
     }
 
     /// Whether the robot position before a movement is unknown: at the start of the program or of
     /// an uncalled routine, after an unknown call, in an error handler.
-    pub fn may_start(&self, site: usize) -> bool {
-        self.starts.contains(&site)
+    pub fn is_unknown_before(&self, site: usize) -> bool {
+        self.unknown_starts.contains(&site)
     }
 
     /// Whether a movement is in an error handler of its routine.
@@ -174,18 +163,16 @@ impl<'c> Context<'c> {
 
     /// The constant value of an expression in a routine.
     pub fn constant(&self, routine: RoutineId, expr: &Expr) -> Option<Datum> {
-        constant(self.program, &self.quiet, routine, expr)
+        constant(self.program, &self.flow.data_names, routine, expr)
     }
 
     /// Whether the routines of some movements, or the routines they call, contain a process: a
     /// wait, an output, or another action at standstill. A cycle with very many movements per wait
     /// or output counts as a demonstration without a process.
-    pub fn works(&self, sites: &[usize]) -> bool {
-        let is_move =
-            |done: &&TraceStep<'_>| matches!(done.what, Action::Move(_) | Action::Left(_));
-        let moves = self.trace.iter().filter(is_move).count();
+    pub fn has_process(&self, sites: &[usize]) -> bool {
+        let moves = self.trace.iter().filter(|step| step.what.moves()).count();
         let rest = self.trace.len() - moves;
-        if moves > MOST_MOVES * rest.max(1) {
+        if moves > MAX_MOVES * rest.max(1) {
             return false;
         }
         let mut open: Vec<RoutineId> = sites.iter().map(|site| self.sites[*site].place.0).collect();
@@ -194,12 +181,11 @@ impl<'c> Context<'c> {
             if !seen.insert(routine) {
                 continue;
             }
-            for node in &self.flow.graph(routine).nodes {
-                let GraphStep::Statement(stmt) = node.step else { continue };
+            for stmt in self.flow.statements_of(routine) {
                 match self.flow.class(routine, stmt) {
                     Class::Output | Class::Wait => return true,
                     Class::Call(callee) => open.push(callee),
-                    Class::Other if self.flow.is_unknown(stmt) => return true,
+                    Class::Other if self.flow.is_opaque(stmt) => return true,
                     _ => {}
                 }
             }
@@ -209,21 +195,15 @@ impl<'c> Context<'c> {
 
     /// The reachable calls of instructions with this name (lower case).
     pub fn calls(&self, key: &'static str) -> Vec<(Place, &'c Stmt, &'c Call)> {
-        let mut found = Vec::new();
-        for (routine, graph, reachable) in self.flow.graphs() {
-            for (node, content) in graph.nodes.iter().enumerate() {
-                if let GraphStep::Statement(stmt) = content.step
-                    && let StmtKind::Call(call) = &stmt.kind
-                    && let Callee::Name(name) = &call.callee
-                    && name.key == key
-                    && (reachable[node] || !self.program.routine(routine).error.is_empty())
-                {
-                    found.push(((routine, node), stmt, call));
-                }
-            }
-        }
-        found.sort_by_key(|(_, stmt, _)| stmt.span);
-        found
+        let calls = self.flow.statements().filter_map(|(place, stmt, reachable)| {
+            let StmtKind::Call(call) = &stmt.kind else { return None };
+            let handles_errors = !self.program.routine(place.0).error.is_empty();
+            let meant = called_name(stmt)?.key == key && (reachable || handles_errors);
+            meant.then_some((place, stmt, call))
+        });
+        let mut calls: Vec<_> = calls.collect();
+        calls.sort_by_key(|(_, stmt, _)| stmt.span);
+        calls
     }
 
     /// Everything that can follow a movement on any path of the control flow.
@@ -239,6 +219,15 @@ impl<'c> Context<'c> {
             _ => None,
         });
         moves.collect::<Option<Vec<usize>>>().filter(|moves| !moves.is_empty())
+    }
+
+    /// Whether all executions of a movement, if there are any, have settings of a kind.
+    pub fn always(&self, site: usize, has: impl Fn(&Settings) -> bool) -> bool {
+        let mut executions = self.sites[site].executions.iter();
+        executions.all(|step| {
+            let movement = self.trace[*step].what.movement();
+            movement.is_some_and(|movement| has(&movement.settings))
+        })
     }
 
     /// The movement statement of a span.
@@ -264,10 +253,8 @@ impl<'c> Context<'c> {
     /// The simulated movement of a step of the trace.
     pub fn record(&self, step: usize) -> Option<(&'c Run, &'c MoveRecord, &'c Leg)> {
         let (event, index) = self.trace[step].event?;
-        match &self.cycle?.simulation.events[event].what {
-            What::Run(run) => Some((run, &run.moves[index], &run.legs[index])),
-            _ => None,
-        }
+        let run = trace::run(&self.cycle?.simulation.events[event])?;
+        Some((run, &run.moves[index], &run.legs[index]))
     }
 
     /// The TCP pose at a step of the trace, in one frame for all steps, if known.
@@ -275,25 +262,16 @@ impl<'c> Context<'c> {
         if let Some((_, _, leg)) = self.record(step) {
             return Some(leg.target);
         }
-        match &self.trace[step].what {
-            Action::Move(movement) => match &movement.target {
-                Target::Pose(target) if movement.wobj.fixed && movement.tool.robhold => {
-                    let shift = movement.settings.displacement.unwrap_or_else(Isometry3::identity);
-                    Some(movement.wobj.frame * shift * target.pose)
-                }
-                _ => None,
-            },
-            _ => None,
-        }
+        self.trace[step].what.movement().and_then(pose_of)
     }
 
     /// The movement steps before and after a step of the trace.
     pub fn neighbours(&self, step: usize) -> Option<(usize, usize)> {
-        let is_move = |done: &TraceStep<'_>| matches!(done.what, Action::Move(_) | Action::Left(_));
-        let before = self.trace[..step].iter().rposition(is_move)?;
-        let after = step + 1 + self.trace[step + 1..].iter().position(is_move)?;
-        let moves = |step: usize| matches!(self.trace[step].what, Action::Move(_));
-        (moves(before) && moves(after)).then_some((before, after))
+        let moves = |step: &TraceStep<'_>| step.what.moves();
+        let before = self.trace[..step].iter().rposition(moves)?;
+        let after = step + 1 + self.trace[step + 1..].iter().position(moves)?;
+        let known = |step: usize| self.trace[step].what.movement().is_some();
+        (known(before) && known(after)).then_some((before, after))
     }
 
     /// The corner at a movement's goal: worst case over all executions, or over all paths of the
@@ -305,12 +283,11 @@ impl<'c> Context<'c> {
         }
         let corners = executed.iter().filter_map(|step| {
             let (before, after) = self.neighbours(*step)?;
-            let [a, b, c] = [before, *step, after].map(|step| self.pose(step));
-            Some(corner(&a?, &b?, &c?))
+            Some(corner(&self.pose(before)?, &self.pose(*step)?, &self.pose(after)?))
         });
         let corners: Vec<Corner> = corners.collect();
         // The last movement of the trace has no successor.
-        if corners.is_empty() || corners.len() + 1 < executed.len() {
+        if corners.len() + 1 < executed.len() {
             return None;
         }
         worst(corners)
@@ -338,50 +315,66 @@ impl<'c> Context<'c> {
     }
 
     /// The saving of a change of movements or waits in a cycle.
-    pub fn weigh(&self, spans: &[Span], change: &Change<'_>) -> Weighed {
+    ///
+    /// # Errors
+    /// The change saves nothing.
+    pub fn evaluate(&self, spans: &[Span], change: &Change<'_>) -> Evaluation {
         match (self.model, self.cycle) {
-            (Some(model), Some(cycle)) => weigh(model, cycle, spans, change),
-            _ => Weighed::Unknown,
+            (Some(model), Some(cycle)) => evaluate(model, cycle, spans, change),
+            _ => Ok(None),
         }
     }
 }
 
-fn starts(flow: &Flow<'_>, by_place: &BTreeMap<Place, usize>) -> BTreeSet<usize> {
-    let mut sources: Vec<Place> = Vec::new();
+/// The target pose of a movement in world coordinates, if the robot holds the tool and the work
+/// object is fixed.
+fn pose_of(movement: &Movement) -> Option<Isometry3<f64>> {
+    match &movement.target {
+        Target::Pose(target) if movement.wobj.fixed && movement.tool.robhold => {
+            let shift = movement.settings.displacement.unwrap_or_default();
+            Some(movement.wobj.frame * shift * target.pose)
+        }
+        _ => None,
+    }
+}
+
+/// The movements that can follow a place, whatever comes between.
+fn moves_after(flow: &Flow<'_>, by_place: &BTreeMap<Place, usize>, place: Place) -> Vec<usize> {
+    let next = flow.following(place, Through::All).into_iter();
+    next.filter_map(|next| match next {
+        Next::Move(place) => by_place.get(&place).copied(),
+        _ => None,
+    })
+    .collect()
+}
+
+fn unknown_starts(
+    program: &Program,
+    flow: &Flow<'_>,
+    by_place: &BTreeMap<Place, usize>,
+) -> BTreeSet<usize> {
+    let starts_anywhere = |routine: &RoutineId| {
+        flow.callers(*routine).is_empty() || flow.is_entry(*routine) || flow.has_late_calls()
+    };
+    let entries = routines(program).map(|(id, _)| id).filter(starts_anywhere);
+    let mut sources: Vec<Place> = entries.map(|id| (id, 0)).collect();
     let mut starts = BTreeSet::new();
-    for (routine, graph, reachable) in flow.graphs() {
-        if flow.callers(routine).is_empty() || flow.is_entry(routine) || flow.has_late_calls() {
-            sources.push((routine, 0));
+    for (place, stmt, reachable) in flow.statements() {
+        if flow.loses_position(place.0, stmt) {
+            sources.push(place);
         }
-        for (node, content) in graph.nodes.iter().enumerate().skip(2) {
-            let unknown = match content.step {
-                GraphStep::Statement(stmt) => flow.is_loose(routine, stmt),
-                _ => false,
-            };
-            if unknown {
-                sources.push((routine, node));
-            }
-            if !reachable[node] {
-                starts.extend(by_place.get(&(routine, node)).copied());
-            }
+        if !reachable {
+            starts.extend(by_place.get(&place).copied());
         }
     }
-    for source in sources {
-        for next in flow.following(source, Through::All) {
-            if let Next::Move(place) = next {
-                starts.extend(by_place.get(&place).copied());
-            }
-        }
-    }
+    starts.extend(sources.into_iter().flat_map(|place| moves_after(flow, by_place, place)));
     starts
 }
 
 /// Fills unknown facts of a movement from its executions, if they agree.
 fn complete(site: &mut Site<'_>, trace: &[TraceStep<'_>]) {
-    let mut executions = site.executions.iter().filter_map(|step| match &trace[*step].what {
-        Action::Move(movement) => Some(facts_of(movement)),
-        _ => None,
-    });
+    let movements = site.executions.iter().filter_map(|step| trace[*step].what.movement());
+    let mut executions = movements.map(facts_of);
     let Some(mut first) = executions.next() else { return };
     for other in executions {
         first.zone = first.zone.filter(|zone| Some(*zone) == other.zone);

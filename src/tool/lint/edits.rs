@@ -1,9 +1,11 @@
-//! Text edits that rules propose.
+//! Changes that rules propose: edits of the text, and the same in the simulated steps.
 
 use super::context::Context;
-use super::rule::{Applicability, Fix};
 use super::site::Site;
+use crate::rapid::builtins::MoveForm;
+use crate::rapid::ir::movement::{Movement, Settings, Zone};
 use crate::rapid::text::{Edit, Span};
+use crate::retime::motion::Step;
 
 /// Predefined zones: name, path and orientation size, mm.
 const ZONES: [(&str, f64, f64); 6] = [
@@ -25,14 +27,14 @@ pub(super) struct NamedZone {
     /// `z10` …
     pub(super) name: &'static str,
     /// Its sizes.
-    pub(super) zone: crate::rapid::ir::movement::Zone,
+    pub(super) zone: Zone,
 }
 
 /// The largest predefined zone whose size is at most `most`, m.
 pub(super) fn zone_within(most: f64) -> Option<NamedZone> {
     let fits = |(_, _, orientation): &&(&str, f64, f64)| *orientation * 1e-3 <= most + 1e-9;
     let (name, tcp, orientation) = ZONES.iter().rev().find(fits)?;
-    let zone = crate::rapid::ir::movement::Zone {
+    let zone = Zone {
         fine: false,
         tcp: tcp * 1e-3,
         orientation: orientation * 1e-3,
@@ -52,9 +54,40 @@ pub(super) fn replace(span: Span, text: &str) -> Edit {
     Edit { span, text: text.as_bytes().to_vec() }
 }
 
-/// A fix with one edit.
-pub(super) fn fix(applicability: Applicability, edit: Edit) -> Fix {
-    Fix { applicability, edits: vec![edit] }
+/// A step whose movement is changed; other steps stay.
+pub(super) fn change_movement(step: &Step, change: impl FnOnce(&mut Movement)) -> Vec<Step> {
+    let mut step = step.clone();
+    if let Step::Move(movement) = &mut step {
+        change(movement);
+    }
+    vec![step]
+}
+
+/// A step with another zone.
+pub(super) fn with_zone(step: &Step, zone: Zone) -> Vec<Step> {
+    change_movement(step, |movement| movement.zone = zone)
+}
+
+/// A step with a limited speed, m/s.
+pub(super) fn with_speed(step: &Step, limit: f64) -> Vec<Step> {
+    change_movement(step, |movement| movement.speed.tcp = movement.speed.tcp.min(limit))
+}
+
+/// A step with another acceleration and, if it is given, another ramp (1 = 100 %).
+pub(super) fn with_acceleration(step: &Step, share: f64, ramp: Option<f64>) -> Vec<Step> {
+    change_movement(step, |movement| {
+        let settings = Settings::clone(&movement.settings);
+        let ramp = ramp.unwrap_or(settings.ramp);
+        movement.settings = Settings { acceleration: share, ramp, ..settings }.into();
+    })
+}
+
+/// A step with a joint movement in place of a line.
+pub(super) fn as_joint(step: &Step) -> Vec<Step> {
+    change_movement(step, |movement| {
+        movement.form = MoveForm::Joint;
+        movement.instruction = "MoveJ".into();
+    })
 }
 
 /// Removes a statement, with its line if nothing else is on it. `None` for the only statement of a

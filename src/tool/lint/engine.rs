@@ -6,6 +6,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::context::Context;
+use super::evaluate::Cycle;
 use super::group::Group;
 use super::job::Job;
 use super::register::ALL;
@@ -13,7 +14,6 @@ use super::rule::Finding;
 use super::rules::unused_suppression;
 use super::suppress::{Suppression, suppressions};
 use super::trace;
-use super::weigh::Cycle;
 use crate::arm::robot::Model;
 use crate::rapid::ir::hir::Module;
 use crate::rapid::ir::lower;
@@ -49,7 +49,8 @@ impl Report {
     }
 }
 
-struct Read {
+/// A parsed file.
+struct ParsedFile {
     modules: Vec<Module>,
     suppressions: Vec<Suppression>,
 }
@@ -57,7 +58,7 @@ struct Read {
 /// The parsed files of the last run; unchanged files are not parsed again.
 #[derive(Default)]
 pub struct ReadCache {
-    files: Vec<(Vec<u8>, Arc<Read>)>,
+    files: Vec<(Vec<u8>, Arc<ParsedFile>)>,
 }
 
 /// A report with the simulated cycle of each program, in program order; `None` without a robot or
@@ -76,16 +77,16 @@ pub struct Examined {
 pub fn lint(job: &Job<'_>) -> Report {
     let read = read(job, &ReadCache::default());
     // Cycles are not kept: those of all programs of a plant would fill the memory.
-    let report = |unit: &Group| one(job, unit, &read).0;
-    merged(units(job, &read).par_iter().map(report).collect())
+    let report = |group: &Group| lint_group(job, group, &read).0;
+    merged(programs(job, &read).par_iter().map(report).collect())
 }
 
 /// Lints all programs; also returns their cycles.
 #[must_use]
 pub fn examine(job: &Job<'_>) -> Examined {
     let read = read(job, &ReadCache::default());
-    let units = units(job, &read);
-    examine_units(job, &units, &read)
+    let groups = programs(job, &read);
+    examine_programs(job, &groups, &read)
 }
 
 /// Lints the programs that contain a file; only changed files are parsed again.
@@ -94,14 +95,14 @@ pub fn examine_file(job: &Job<'_>, file: usize, kept: &mut ReadCache) -> Examine
     let read = read(job, kept);
     let bytes = job.files.iter().map(|file| file.bytes.clone());
     kept.files = bytes.zip(read.iter().cloned()).collect();
-    let mut units = units(job, &read);
-    units.retain(|unit| unit.files.contains(&file));
-    examine_units(job, &units, &read)
+    let mut groups = programs(job, &read);
+    groups.retain(|group| group.files.contains(&file));
+    examine_programs(job, &groups, &read)
 }
 
-fn examine_units(job: &Job<'_>, units: &[Group], read: &[Arc<Read>]) -> Examined {
-    let (reports, cycles) = units.par_iter().map(|unit| one(job, unit, read)).unzip();
-    let programs = units.iter().map(|unit| unit.files.clone()).collect();
+fn examine_programs(job: &Job<'_>, groups: &[Group], read: &[Arc<ParsedFile>]) -> Examined {
+    let (reports, cycles) = groups.par_iter().map(|group| lint_group(job, group, read)).unzip();
+    let programs = groups.iter().map(|group| group.files.clone()).collect();
     Examined { report: merged(reports), cycles, programs }
 }
 
@@ -119,7 +120,7 @@ fn merged(reports: Vec<Report>) -> Report {
     all
 }
 
-fn read(job: &Job<'_>, kept: &ReadCache) -> Vec<Arc<Read>> {
+fn read(job: &Job<'_>, kept: &ReadCache) -> Vec<Arc<ParsedFile>> {
     job.files
         .par_iter()
         .enumerate()
@@ -131,7 +132,7 @@ fn read(job: &Job<'_>, kept: &ReadCache) -> Vec<Arc<Read>> {
             }
             let parse = syntax::parse(&file.bytes);
             let modules = lower(file.id, &parse, &file.bytes);
-            Arc::new(Read { modules, suppressions: suppressions(file, &parse) })
+            Arc::new(ParsedFile { modules, suppressions: suppressions(file, &parse) })
         })
         .collect()
 }
@@ -140,19 +141,22 @@ fn read(job: &Job<'_>, kept: &ReadCache) -> Vec<Arc<Read>> {
 #[must_use]
 pub fn cycles(job: &Job<'_>) -> Vec<Option<Cycle>> {
     let read = read(job, &ReadCache::default());
-    let cycle = |unit: &Group| {
-        let modules =
-            unit.files.iter().flat_map(|file| read[*file].modules.iter().cloned()).collect();
-        let program = Program::new(modules);
-        program.entry(&unit.entry).and_then(|entry| self::cycle(job, &program, entry))
+    let cycle = |group: &Group| {
+        let program = program(group, &read);
+        program.entry(&group.entry).and_then(|entry| self::cycle(job, &program, entry))
     };
-    units(job, &read).par_iter().map(cycle).collect()
+    programs(job, &read).par_iter().map(cycle).collect()
+}
+
+fn program(group: &Group, read: &[Arc<ParsedFile>]) -> Program {
+    let files = group.files.iter().map(|file| &read[*file]);
+    Program::new(files.flat_map(|file| file.modules.iter().cloned()).collect())
 }
 
 /// The programs of a job. A group with several entries is split by folder, and a folder with several
 /// entries by file.
-fn units(job: &Job<'_>, read: &[Arc<Read>]) -> Vec<Group> {
-    let mut units = Vec::new();
+fn programs(job: &Job<'_>, read: &[Arc<ParsedFile>]) -> Vec<Group> {
+    let mut groups = Vec::new();
     for group in &job.groups {
         let entry = group.entry.to_lowercase();
         let entries = |file: &usize| {
@@ -160,7 +164,7 @@ fn units(job: &Job<'_>, read: &[Arc<Read>]) -> Vec<Group> {
             modules.flat_map(|m| &m.routines).filter(|r| r.name.key == entry).count()
         };
         if group.files.iter().map(entries).sum::<usize>() <= 1 {
-            units.push(group.clone());
+            groups.push(group.clone());
             continue;
         }
         let mut folders: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
@@ -171,32 +175,31 @@ fn units(job: &Job<'_>, read: &[Arc<Read>]) -> Vec<Group> {
         }
         for files in folders.into_values() {
             if files.iter().map(entries).sum::<usize>() <= 1 {
-                units.push(Group { files, ..group.clone() });
+                groups.push(Group { files, ..group.clone() });
             } else {
                 let alone = |file| Group { files: vec![file], ..group.clone() };
-                units.extend(files.into_iter().map(alone));
+                groups.extend(files.into_iter().map(alone));
             }
         }
     }
-    units
+    groups
 }
 
-fn one(job: &Job<'_>, unit: &Group, read: &[Arc<Read>]) -> (Report, Option<Cycle>) {
-    let modules = unit.files.iter().flat_map(|file| read[*file].modules.iter().cloned()).collect();
-    let program = Program::new(modules);
-    let entry = program.entry(&unit.entry);
+fn lint_group(job: &Job<'_>, group: &Group, read: &[Arc<ParsedFile>]) -> (Report, Option<Cycle>) {
+    let program = program(group, read);
+    let entry = program.entry(&group.entry);
     let cycle = entry.and_then(|entry| cycle(job, &program, entry));
     let recording = match (&cycle, entry) {
         (None, Some(entry)) => Some(trace::record(&program, entry)),
         _ => None,
     };
     let context =
-        Context::new(job.files, job.model, &program, unit, cycle.as_ref(), recording.as_ref());
+        Context::new(job.files, job.model, &program, group, cycle.as_ref(), recording.as_ref());
     let mut findings = Vec::new();
     for rule in ALL.iter().filter(|rule| job.settings.selects(rule)) {
         (rule.check)(&context, &mut findings);
     }
-    suppress(job, unit, read, &mut findings);
+    suppress(job, group, read, &mut findings);
     let settings = job.settings;
     findings.retain(|finding| {
         let path = &job.files[finding.span.file.0 as usize].path;
@@ -225,7 +228,7 @@ fn cycle(job: &Job<'_>, program: &Program, entry: RoutineId) -> Option<Cycle> {
 }
 
 /// Removes the suppressed findings, and adds findings for unused suppressions.
-fn suppress(job: &Job<'_>, unit: &Group, read: &[Arc<Read>], findings: &mut Vec<Finding>) {
+fn suppress(job: &Job<'_>, group: &Group, read: &[Arc<ParsedFile>], findings: &mut Vec<Finding>) {
     // Keys: file, comment, code of the comment.
     let mut used: BTreeSet<(usize, usize, usize)> = BTreeSet::new();
     findings.retain(|finding| {
@@ -248,12 +251,12 @@ fn suppress(job: &Job<'_>, unit: &Group, read: &[Arc<Read>], findings: &mut Vec<
     if !job.settings.selects(&unused_suppression::RULE) {
         return;
     }
-    for file in &unit.files {
+    for file in &group.files {
         for (index, suppression) in read[*file].suppressions.iter().enumerate() {
             let codes = suppression.codes.iter().enumerate();
             let unused = codes.filter(|(code, _)| !used.contains(&(*file, index, *code)));
             let unused: Vec<&str> = unused.map(|(_, code)| code.as_str()).collect();
-            unused_suppression::judge(job, &ALL, suppression, &unused, findings);
+            unused_suppression::report_unused(job, &ALL, suppression, &unused, findings);
         }
     }
 }

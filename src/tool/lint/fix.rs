@@ -1,18 +1,18 @@
 //! Applies fixes, and withdraws those that do not save energy.
 
 use super::engine::{Examined, Report, cycles, examine, lint};
+use super::evaluate::Cycle;
 use super::job::Job;
 use super::rule::{Applicability, Family, Finding};
 use super::trace::{self, Action};
-use super::weigh::Cycle;
 use crate::rapid::syntax;
 use crate::rapid::text::{Edit, FileId, SourceFile, apply};
 use crate::retime::motion::timeline::What;
 use crate::retime::path::joint_path::{DOF, Joints};
 
-const MOST_ROUNDS: usize = 40;
+const MAX_ROUNDS: usize = 40;
 /// Maximum distance of equal joint positions, rad.
-const SAME: f64 = 1e-4;
+const POSITION_TOLERANCE: f64 = 1e-4;
 /// Rounding of an energy, J.
 const ROUNDING: f64 = 1e-6;
 
@@ -36,7 +36,7 @@ pub struct Fixed {
 pub fn fix(job: &Job<'_>, most: Applicability) -> Fixed {
     let mut files = job.files.to_vec();
     let (mut applied, mut withdrawn) = (0, 0);
-    for _ in 0..MOST_ROUNDS {
+    for _ in 0..MAX_ROUNDS {
         let now = with_files(job, &files);
         let Examined { report, cycles: mut before, .. } = examine(&now);
         let chosen = candidates(&report, most);
@@ -150,7 +150,7 @@ fn attempt(
 /// end, and no additional problem.
 fn same_process(before: &Cycle, after: &Cycle) -> bool {
     let actions = |cycle: &Cycle| -> Vec<String> {
-        let trace = trace::of_simulation(&cycle.simulation);
+        let trace = trace::of_events(&cycle.simulation.events);
         let actions = trace.iter().filter_map(|done| match &done.what {
             Action::Output(output) => Some(format!("{} {}", output.signal, output.value)),
             Action::Wait(wait, basis) => {
@@ -168,27 +168,18 @@ fn same_process(before: &Cycle, after: &Cycle) -> bool {
             What::Wait(wait) => Some(wait.q),
             _ => None,
         });
-        let last = events.iter().rev().find_map(|event| match &event.what {
-            What::Run(run) => Some(run.end),
-            _ => None,
-        });
+        let last = events.iter().rev().find_map(trace::run).map(|run| run.end);
         waits.chain(last).collect()
     };
-    let sound = |cycle: &Cycle| {
-        cycle
-            .simulation
-            .events
-            .iter()
-            .filter(|event| match &event.what {
-                What::Run(run) => run.problem.is_some(),
-                _ => false,
-            })
-            .count()
+    let problems = |cycle: &Cycle| {
+        let runs = cycle.simulation.events.iter().filter_map(trace::run);
+        runs.filter(|run| run.problem.is_some()).count()
     };
     let (a, b) = (places(before), places(after));
-    let near = |(a, b): (&Joints, &Joints)| (0..DOF).all(|j| (a[j] - b[j]).abs() <= SAME);
+    let near =
+        |(a, b): (&Joints, &Joints)| (0..DOF).all(|j| (a[j] - b[j]).abs() <= POSITION_TOLERANCE);
     actions(before) == actions(after)
         && a.len() == b.len()
         && a.iter().zip(&b).all(near)
-        && sound(after) <= sound(before)
+        && problems(after) <= problems(before)
 }

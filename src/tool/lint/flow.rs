@@ -2,14 +2,15 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::quiet::Quiet;
+use super::data_names::DataNames;
+use super::statements::{called_instruction, routines};
 use crate::rapid::builtins::{self, Instruction};
 use crate::rapid::ir::graph::{Graph, NodeId, Step, When};
-use crate::rapid::ir::hir::{Callee, Stmt, StmtKind};
+use crate::rapid::ir::hir::{Call, Callee, Stmt, StmtKind};
 use crate::rapid::ir::program::{Program, RoutineId, Symbol};
 
 /// Maximum number of visited statements per search.
-const MOST_STEPS: usize = 2_000;
+const MAX_STEPS: usize = 2_000;
 
 /// A statement, given by routine and node of the graph.
 pub type Place = (RoutineId, NodeId);
@@ -33,7 +34,7 @@ pub enum Next {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
     /// No effect.
-    Quiet,
+    NoEffect,
     /// It moves.
     Move,
     /// It calls a routine of the program.
@@ -50,7 +51,7 @@ pub enum Class {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Through {
     /// Statements without effect.
-    Quiet,
+    NoEffect,
     /// Statements without effect, and outputs.
     Outputs,
     /// Everything except movements.
@@ -65,43 +66,35 @@ pub struct Flow<'p> {
     callers: BTreeMap<RoutineId, Vec<Place>>,
     /// Whether some call has a computed name.
     late: bool,
-    quiet: Quiet<'p>,
+    /// The names that denote data.
+    pub data_names: DataNames<'p>,
 }
 
 impl<'p> Flow<'p> {
     /// The control flow of a program that starts with `entry`, if known.
     pub fn new(program: &'p Program, entry: Option<RoutineId>) -> Flow<'p> {
-        let mut graphs = BTreeMap::new();
-        for (module, body) in program.modules.iter().enumerate() {
-            for (index, routine) in body.routines.iter().enumerate() {
-                let graph = Graph::new(routine);
-                let reachable = graph.reachable();
-                graphs.insert(RoutineId { module, index }, (graph, reachable));
-            }
-        }
-        let quiet = Quiet::new(program);
-        let mut flow =
-            Flow { program, entry, graphs, callers: BTreeMap::new(), late: false, quiet };
-        flow.find_calls();
-        flow
-    }
-
-    fn find_calls(&mut self) {
+        let graphs = routines(program).map(|(id, routine)| {
+            let graph = Graph::new(routine);
+            let reachable = graph.reachable();
+            (id, (graph, reachable))
+        });
+        let flow = Flow {
+            program,
+            entry,
+            graphs: graphs.collect(),
+            callers: BTreeMap::new(),
+            late: false,
+            data_names: DataNames::new(program),
+        };
         let mut callers: BTreeMap<RoutineId, Vec<Place>> = BTreeMap::new();
-        for (id, (graph, _)) in &self.graphs {
-            for (node, content) in graph.nodes.iter().enumerate() {
-                let Step::Statement(stmt) = content.step else { continue };
-                if let StmtKind::Call(call) = &stmt.kind
-                    && matches!(call.callee, Callee::Late(_))
-                {
-                    self.late = true;
-                }
-                if let Class::Call(callee) = self.class(*id, stmt) {
-                    callers.entry(callee).or_default().push((*id, node));
-                }
+        let mut late = false;
+        for (place, stmt, _) in flow.statements() {
+            late |= matches!(stmt.kind, StmtKind::Call(Call { callee: Callee::Late(_), .. }));
+            if let Class::Call(callee) = flow.class(place.0, stmt) {
+                callers.entry(callee).or_default().push(place);
             }
         }
-        self.callers = callers;
+        Flow { callers, late, ..flow }
     }
 
     /// The graph of a routine.
@@ -109,9 +102,16 @@ impl<'p> Flow<'p> {
         &self.graphs[&routine].0
     }
 
-    /// The routines with their graphs, in order.
-    pub fn graphs(&self) -> impl Iterator<Item = (RoutineId, &Graph<'p>, &[bool])> {
-        self.graphs.iter().map(|(id, (graph, reachable))| (*id, graph, reachable.as_slice()))
+    /// The statements by routine and node, and whether they are reachable.
+    pub fn statements(&self) -> impl Iterator<Item = (Place, &'p Stmt, bool)> {
+        self.graphs.iter().flat_map(|(id, (graph, reachable))| {
+            statements(graph).map(|(node, stmt)| ((*id, node), stmt, reachable[node]))
+        })
+    }
+
+    /// The statements of a routine.
+    pub fn statements_of(&self, routine: RoutineId) -> impl Iterator<Item = &'p Stmt> {
+        statements(self.graph(routine)).map(|(_, stmt)| stmt)
     }
 
     /// Whether some call has a computed name.
@@ -134,12 +134,13 @@ impl<'p> Flow<'p> {
 
     /// The meaning of a statement for the movement before it.
     pub fn class(&self, routine: RoutineId, stmt: &Stmt) -> Class {
-        let quiet = |is: bool| if is { Class::Quiet } else { Class::Other };
+        let class = |no_effect: bool| if no_effect { Class::NoEffect } else { Class::Other };
+        let names = &self.data_names;
         match &stmt.kind {
-            StmtKind::Assign { target, value } => quiet(
-                !self.quiet.is_flag(routine, target)
-                    && self.quiet.expression(routine, target)
-                    && self.quiet.expression(routine, value),
+            StmtKind::Assign { target, value } => class(
+                !names.is_flag(routine, target)
+                    && names.has_only_data(routine, target)
+                    && names.has_only_data(routine, value),
             ),
             StmtKind::Call(call) => {
                 let Callee::Name(name) = &call.callee else { return Class::Other };
@@ -160,13 +161,13 @@ impl<'p> Flow<'p> {
                     Class::Wait
                 } else {
                     let on_the_fly = instruction.is_some_and(|found| found.on_the_fly);
-                    quiet(on_the_fly && self.quiet.arguments(routine, &call.args))
+                    class(on_the_fly && names.have_only_data(routine, &call.args))
                 }
             }
             StmtKind::Return(value) => {
-                quiet(value.as_ref().is_none_or(|value| self.quiet.expression(routine, value)))
+                class(value.as_ref().is_none_or(|value| names.has_only_data(routine, value)))
             }
-            StmtKind::Goto(_) | StmtKind::Label(_) | StmtKind::Data(_) => Class::Quiet,
+            StmtKind::Goto(_) | StmtKind::Label(_) | StmtKind::Data(_) => Class::NoEffect,
             _ => Class::Other,
         }
     }
@@ -181,7 +182,7 @@ impl<'p> Flow<'p> {
             if !seen.insert(place) {
                 continue;
             }
-            if seen.len() > MOST_STEPS {
+            if seen.len() > MAX_STEPS {
                 found.insert(Next::Other);
                 break;
             }
@@ -190,35 +191,31 @@ impl<'p> Flow<'p> {
                 Step::Entry | Step::Count => self.push_next(place, &mut open),
                 Step::Exit => self.leave(routine, &mut open, &mut found),
                 Step::Condition(expr) | Step::Test(expr) => {
-                    if through == Through::All || self.quiet.expression(routine, expr) {
+                    if through == Through::All || self.data_names.has_only_data(routine, expr) {
                         self.push_next(place, &mut open);
                     } else {
                         found.insert(Next::Other);
                     }
                 }
                 Step::Statement(stmt) => {
-                    let class = self.class(routine, stmt);
-                    let passes = match class {
-                        Class::Quiet => true,
-                        Class::Output => through != Through::Quiet,
-                        Class::Wait => through == Through::All,
-                        Class::Other => through == Through::All && !self.is_unknown(stmt),
-                        Class::Move | Class::Call(_) => false,
-                    };
-                    if passes {
-                        self.push_next(place, &mut open);
-                        continue;
-                    }
-                    match class {
-                        Class::Move => found.insert(Next::Move(place)),
-                        Class::Output => found.insert(Next::Output(place)),
-                        Class::Wait => found.insert(Next::Wait(place)),
+                    let all = through == Through::All;
+                    let next = match self.class(routine, stmt) {
                         Class::Call(callee) => {
                             open.push((callee, 0));
-                            false
+                            continue;
                         }
-                        Class::Quiet | Class::Other => found.insert(Next::Other),
+                        Class::NoEffect => None,
+                        Class::Move => Some(Next::Move(place)),
+                        Class::Output => {
+                            (through == Through::NoEffect).then_some(Next::Output(place))
+                        }
+                        Class::Wait => (!all).then_some(Next::Wait(place)),
+                        Class::Other => (!all || self.is_opaque(stmt)).then_some(Next::Other),
                     };
+                    if next.is_none() {
+                        self.push_next(place, &mut open);
+                    }
+                    found.extend(next);
                 }
             }
         }
@@ -231,19 +228,14 @@ impl<'p> Flow<'p> {
     }
 
     /// Whether the robot position after a statement is unknown.
-    pub fn is_loose(&self, routine: RoutineId, stmt: &Stmt) -> bool {
-        self.class(routine, stmt) == Class::Other && self.is_unknown(stmt)
+    pub fn loses_position(&self, routine: RoutineId, stmt: &Stmt) -> bool {
+        self.class(routine, stmt) == Class::Other && self.is_opaque(stmt)
     }
 
     /// Whether a statement may lead anywhere: it calls something outside the files.
-    pub fn is_unknown(&self, stmt: &Stmt) -> bool {
+    pub fn is_opaque(&self, stmt: &Stmt) -> bool {
         match &stmt.kind {
-            StmtKind::Call(call) => match &call.callee {
-                Callee::Name(name) => {
-                    builtins::instruction(&name.key).is_none_or(Instruction::may_move)
-                }
-                Callee::Late(_) => true,
-            },
+            StmtKind::Call(_) => called_instruction(stmt).is_none_or(Instruction::may_move),
             StmtKind::Broken | StmtKind::Placeholder => true,
             _ => false,
         }
@@ -267,4 +259,12 @@ impl<'p> Flow<'p> {
             self.push_next(*caller, open);
         }
     }
+}
+
+/// The statements of a graph with their nodes.
+fn statements<'p>(graph: &Graph<'p>) -> impl Iterator<Item = (NodeId, &'p Stmt)> {
+    graph.nodes.iter().enumerate().filter_map(|(node, content)| match content.step {
+        Step::Statement(stmt) => Some((node, stmt)),
+        _ => None,
+    })
 }

@@ -6,24 +6,25 @@
 //! the part of the cycle around it again.
 
 pub mod context;
+mod data_names;
 mod edits;
 pub mod engine;
+pub mod evaluate;
 pub mod fix;
 pub mod flow;
 pub mod group;
 pub mod job;
-mod quiet;
 mod register;
 pub mod rule;
 mod rules;
 pub mod saving;
 pub mod settings;
 pub mod site;
+mod statements;
 mod stops;
 pub mod suppress;
 pub mod system;
 pub mod trace;
-pub mod weigh;
 mod words;
 
 pub use engine::{Report, lint};

@@ -147,6 +147,38 @@ impl Finding {
         }
     }
 
+    /// The finding with a change in words, and its saving if that is known.
+    #[must_use]
+    pub fn with_saving(
+        self,
+        change: impl Into<String>,
+        saving: impl Into<Option<Saving>>,
+    ) -> Finding {
+        Finding { change: change.into(), saving: saving.into(), ..self }
+    }
+
+    /// The finding with a further assumption of the saving.
+    #[must_use]
+    pub fn with_assumption(mut self, assumption: impl Into<String>) -> Finding {
+        self.assumptions.push(assumption.into());
+        self
+    }
+
+    /// The finding with a further related place.
+    #[must_use]
+    pub fn with_related(mut self, span: Span, text: impl Into<String>) -> Finding {
+        self.related.push((span, text.into()));
+        self
+    }
+
+    /// The finding with a fix that the user must review; without edits there is none.
+    #[must_use]
+    pub fn with_unsafe_fix(self, edits: impl IntoIterator<Item = Edit>) -> Finding {
+        let edits: Vec<Edit> = edits.into_iter().collect();
+        let fix = Fix { applicability: Applicability::Unsafe, edits };
+        Finding { fix: (!fix.edits.is_empty()).then_some(fix), ..self }
+    }
+
     /// The message with the saving, and how to reproduce it.
     #[must_use]
     pub fn full_message(&self) -> String {

@@ -13,32 +13,10 @@ pub struct Saving {
     pub time_s: f64,
 }
 
-/// The change saves nothing.
+/// The change saves nothing, or the interval of its saving includes zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("it saves nothing; leave it as it is")]
 pub struct SavesNothing;
 
-/// The result of evaluating a change.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Weighed {
-    /// It cannot be simulated.
-    Unknown,
-    /// It saves nothing, or its interval includes zero.
-    Nothing,
-    /// It saves energy.
-    Saves(Saving),
-}
-
-impl Weighed {
-    /// The saving, if known.
-    ///
-    /// # Errors
-    /// The change saves nothing.
-    pub fn saving(self) -> Result<Option<Saving>, SavesNothing> {
-        match self {
-            Weighed::Unknown => Ok(None),
-            Weighed::Nothing => Err(SavesNothing),
-            Weighed::Saves(saving) => Ok(Some(saving)),
-        }
-    }
-}
+/// The saving of a change; `None` if it cannot be simulated.
+pub type Evaluation = Result<Option<Saving>, SavesNothing>;

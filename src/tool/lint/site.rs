@@ -4,13 +4,12 @@ use std::collections::BTreeSet;
 
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 
+use super::data_names::DataNames;
 use super::flow::Place;
-use super::quiet::Quiet;
+use super::statements::all_blocks;
 use crate::rapid::builtins::{MoveForm, MoveKind, MoveSignature, movement};
 use crate::rapid::ir::exec::evaluate;
-use crate::rapid::ir::hir::{
-    ArgKind, Block, Call, Callee, Expr, ExprKind, Routine, Stmt, StmtKind,
-};
+use crate::rapid::ir::hir::{ArgKind, Call, Callee, Expr, ExprKind, Routine, Stmt, StmtKind};
 use crate::rapid::ir::movement::{Movement, Speed, Target, Zone};
 use crate::rapid::ir::program::{Program, RoutineId};
 use crate::rapid::ir::value::Datum;
@@ -83,15 +82,15 @@ impl Goal {
     /// Whether two goals are equal.
     pub fn is_same(&self, other: &Goal) -> bool {
         /// m and rad.
-        const SAME: f64 = 1e-5;
+        const TOLERANCE: f64 = 1e-5;
         match (self, other) {
             (Goal::Joints(a), Goal::Joints(b)) => {
-                a.iter().zip(b).all(|(a, b)| (a - b).abs() < SAME)
+                a.iter().zip(b).all(|(a, b)| (a - b).abs() < TOLERANCE)
             }
             (Goal::Pose(a, conf), Goal::Pose(b, other)) => {
                 conf == other
-                    && (a.translation.vector - b.translation.vector).norm() < SAME
-                    && a.rotation.angle_to(&b.rotation) < SAME
+                    && (a.translation.vector - b.translation.vector).norm() < TOLERANCE
+                    && a.rotation.angle_to(&b.rotation) < TOLERANCE
             }
             _ => false,
         }
@@ -140,7 +139,7 @@ fn named(expr: &Expr) -> Option<&str> {
 /// The movement statement of a call; `None` for other instructions.
 pub fn site<'p>(
     program: &Program,
-    quiet: &Quiet<'_>,
+    names: &DataNames<'_>,
     place: Place,
     stmt: &'p Stmt,
     call: &'p Call,
@@ -172,7 +171,7 @@ pub fn site<'p>(
     let zone = if signature.zone { Some(take("zone")?) } else { None };
     let tool = take("tool");
     let wobj = option("wobj");
-    let value = |expr: &Expr| constant(program, quiet, place.0, expr);
+    let value = |expr: &Expr| constant(program, names, place.0, expr);
     let stops = options.iter().any(|(key, _)| *key == "inpos");
     let own = options.iter().any(|(key, _)| *key == "z" || *key == "v" || *key == "t");
     let facts = Facts {
@@ -206,34 +205,26 @@ pub fn site<'p>(
 /// The value of an expression if it is the same in every execution of its routine.
 pub fn constant(
     program: &Program,
-    quiet: &Quiet<'_>,
+    names: &DataNames<'_>,
     routine: RoutineId,
     expr: &Expr,
 ) -> Option<Datum> {
-    if names_local(quiet, routine, expr) {
+    if reads_local(names, routine, expr) {
         return None;
     }
     let value = evaluate(program, routine.module, expr);
     value.datum.first_unknown().is_none().then_some(value.datum)
 }
 
-fn names_local(quiet: &Quiet<'_>, routine: RoutineId, expr: &Expr) -> bool {
-    let inner = |expr: &Expr| names_local(quiet, routine, expr);
+fn reads_local(names: &DataNames<'_>, routine: RoutineId, expr: &Expr) -> bool {
     match &expr.kind {
-        ExprKind::Ref(name) => quiet.is_local(routine, &name.key),
-        ExprKind::Field(base, _) => inner(base),
-        ExprKind::Index(base, indices) => inner(base) || indices.iter().any(inner),
-        ExprKind::Call(_, args) => args.iter().any(|arg| match &arg.kind {
-            ArgKind::Positional(expr)
-            | ArgKind::Named(_, expr)
-            | ArgKind::Optional(_, Some(expr)) => inner(expr),
-            ArgKind::Optional(_, None) => false,
-            ArgKind::Conditional(..) => true,
-        }),
-        ExprKind::Aggregate(items) => items.iter().any(inner),
-        ExprKind::Unary(_, operand) => inner(operand),
-        ExprKind::Binary(_, left, right) => inner(left) || inner(right),
-        _ => false,
+        ExprKind::Ref(name) => names.is_local(routine, &name.key),
+        ExprKind::Call(_, args)
+            if args.iter().any(|arg| matches!(arg.kind, ArgKind::Conditional(..))) =>
+        {
+            true
+        }
+        _ => expr.parts().into_iter().any(|part| reads_local(names, routine, part)),
     }
 }
 
@@ -248,36 +239,30 @@ pub fn facts_of(movement: &Movement) -> Facts {
 
 /// Spans of the only statements of compact `IF`s.
 pub fn compact(routine: &Routine) -> BTreeSet<Span> {
-    let mut found = BTreeSet::new();
-    for block in routine.blocks() {
-        collect_compact(block, &mut found);
-    }
-    found
+    let only = |stmt: &Stmt| {
+        let StmtKind::If { branches, .. } = &stmt.kind else { return None };
+        let [(_, inner)] = branches.as_slice() else { return None };
+        let [only] = inner.as_slice() else { return None };
+        (only.span.end == stmt.span.end).then_some(only.span)
+    };
+    all_blocks(routine).into_iter().flatten().filter_map(only).collect()
 }
 
-fn collect_compact(block: &Block, found: &mut BTreeSet<Span>) {
-    for stmt in block {
-        if let StmtKind::If { branches, .. } = &stmt.kind
-            && let [(_, inner)] = branches.as_slice()
-            && let [only] = inner.as_slice()
-            && only.span.end == stmt.span.end
-        {
-            found.insert(only.span);
-        }
-        for inner in stmt.kind.blocks() {
-            collect_compact(inner, found);
-        }
+/// The parts of a record or an array.
+pub(super) fn parts(datum: &Datum) -> Option<&[Datum]> {
+    match datum {
+        Datum::List(parts) => Some(parts),
+        _ => None,
     }
 }
 
-fn numbers(datum: &Datum) -> Option<Vec<f64>> {
-    let Datum::List(items) = datum else { return None };
-    items.iter().map(Datum::num).collect()
+/// The numbers of an array.
+pub(super) fn numbers(datum: &Datum) -> Option<Vec<f64>> {
+    parts(datum)?.iter().map(Datum::num).collect()
 }
 
 fn zone_of(datum: &Datum) -> Option<Zone> {
-    let Datum::List(items) = datum else { return None };
-    let (Datum::Bool(fine), rest) = items.split_first()? else { return None };
+    let (Datum::Bool(fine), rest) = parts(datum)?.split_first()? else { return None };
     let sizes = rest.iter().map(Datum::num).collect::<Option<Vec<f64>>>()?;
     let [tcp, orientation, _, angle, ..] = sizes.as_slice() else { return None };
     Some(Zone {
@@ -294,8 +279,7 @@ fn speed_of(datum: &Datum) -> Option<Speed> {
 }
 
 fn goal_of(datum: &Datum) -> Option<Goal> {
-    let Datum::List(items) = datum else { return None };
-    match items.as_slice() {
+    match parts(datum)? {
         [joints, _] => {
             let joints: [f64; 6] = numbers(joints)?.try_into().ok()?;
             Some(Goal::Joints(joints.map(f64::to_radians)))

@@ -6,11 +6,10 @@ use crate::rapid::ir::exec::{Machine, Note, WaitResult, execute};
 use crate::rapid::ir::movement::{Movement, Output, Unresolved, Wait};
 use crate::rapid::ir::program::{Program, RoutineId};
 use crate::rapid::text::Span;
-use crate::retime::motion::Simulation;
-use crate::retime::motion::timeline::{WaitBasis, What};
+use crate::retime::motion::timeline::{Event, Run, WaitBasis, What};
 
 /// Maximum number of steps of a recording.
-const MOST_STEPS: usize = 50_000;
+const MAX_STEPS: usize = 50_000;
 
 /// One action of a program.
 #[derive(Debug)]
@@ -36,7 +35,20 @@ pub enum Action<'c> {
     Left(Span),
 }
 
-impl Action<'_> {
+impl<'c> Action<'c> {
+    /// The movement, if it moves to a known place.
+    pub fn movement(&self) -> Option<&'c Movement> {
+        match self {
+            Action::Move(movement) => Some(movement),
+            _ => None,
+        }
+    }
+
+    /// Whether it moves, to a known place or not.
+    pub fn moves(&self) -> bool {
+        matches!(self, Action::Move(_) | Action::Left(_))
+    }
+
     /// The statement.
     pub fn span(&self) -> Span {
         match self {
@@ -48,52 +60,45 @@ impl Action<'_> {
     }
 }
 
-/// The trace of a simulation.
-pub fn of_simulation(simulation: &Simulation) -> Vec<TraceStep<'_>> {
+/// The actions of events, in the order in which they happen. Steps have indices into `events`.
+pub fn of_events(events: &[Event]) -> Vec<TraceStep<'_>> {
     let mut trace = Vec::new();
     // Outputs between fly-by movements precede the run to which they belong.
-    let mut held: Vec<(usize, usize, &Output)> = Vec::new();
-    for (event, it) in simulation.events.iter().enumerate() {
-        let output = |(event, _, output)| TraceStep {
-            event: Some((event, 0)),
-            duration: 0.0,
-            what: Action::Output(output),
-        };
+    let mut held: Vec<(usize, TraceStep<'_>)> = Vec::new();
+    for (event, it) in events.iter().enumerate() {
+        let step =
+            |index, duration, what| TraceStep { event: Some((event, index)), duration, what };
         match &it.what {
             What::Output(output, position) => {
-                held.push((event, *position, output));
+                held.push((*position, step(0, 0.0, Action::Output(output))));
             }
             What::Run(run) => {
                 for (index, record) in run.moves.iter().enumerate() {
-                    let due = held.iter().take_while(|(_, position, _)| *position <= index).count();
-                    trace.extend(held.drain(..due).map(output));
-                    trace.push(TraceStep {
-                        event: Some((event, index)),
-                        duration: record.duration,
-                        what: Action::Move(&record.movement),
-                    });
+                    let due = held.iter().take_while(|(position, _)| *position <= index).count();
+                    trace.extend(held.drain(..due).map(|(_, output)| output));
+                    trace.push(step(index, record.duration, Action::Move(&record.movement)));
                 }
             }
             What::Wait(wait) => {
-                trace.extend(held.drain(..).map(output));
-                trace.push(TraceStep {
-                    event: Some((event, 0)),
-                    duration: it.duration,
-                    what: Action::Wait(&wait.wait, wait.basis),
-                });
+                trace.extend(held.drain(..).map(|(_, output)| output));
+                trace.push(step(0, it.duration, Action::Wait(&wait.wait, wait.basis)));
             }
             What::Left(left) => {
-                trace.extend(held.drain(..).map(output));
-                trace.push(TraceStep { event: None, duration: 0.0, what: Action::Left(left.span) });
+                trace.extend(held.drain(..).map(|(_, output)| output));
+                trace.push(step(0, 0.0, Action::Left(left.span)));
             }
         }
     }
-    trace.extend(held.into_iter().map(|(event, _, output)| TraceStep {
-        event: Some((event, 0)),
-        duration: 0.0,
-        what: Action::Output(output),
-    }));
+    trace.extend(held.into_iter().map(|(_, output)| output));
     trace
+}
+
+/// The run of an event.
+pub fn run(event: &Event) -> Option<&Run> {
+    match &event.what {
+        What::Run(run) => Some(run),
+        _ => None,
+    }
 }
 
 /// The recorded actions of a program without a robot.
@@ -142,9 +147,7 @@ impl Machine for Recording {
     fn on_movement(&mut self, movement: Result<Movement, Unresolved>) {
         match movement {
             Ok(movement) => self.steps.push(Recorded::Move(Box::new(movement))),
-            Err(unresolved) => {
-                self.steps.push(Recorded::Left(unresolved.span));
-            }
+            Err(unresolved) => self.steps.push(Recorded::Left(unresolved.span)),
         }
     }
 
@@ -162,7 +165,7 @@ impl Machine for Recording {
     }
 
     fn is_at_limit(&self) -> bool {
-        self.steps.len() > MOST_STEPS
+        self.steps.len() > MAX_STEPS
     }
 }
 

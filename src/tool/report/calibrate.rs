@@ -4,23 +4,23 @@ use std::fmt::Write;
 
 use serde_json::{Value, json};
 
+use super::json::interval;
 use crate::learn::calibrate::{Calibrated, Found};
 use crate::retime::energy::plausible::{Interval, Plausibility};
 
 /// Maximum number of groups in the text, and maximum ratio of new to old deviation that is
 /// reported.
-const NAMED: usize = 5;
-const NARROWER: f64 = 0.9;
+const MAX_GROUPS: usize = 5;
+const MAX_RATIO: f64 = 0.9;
 /// Misfit relative to the noise from which on the log probably belongs to another robot or program.
-const FAR_OFF: f64 = 10.0;
+const MAX_MISFIT: f64 = 10.0;
 
 /// The result as JSON; `path` is the robot's file.
 pub fn json(calibrated: &Calibrated, path: &str) -> Value {
-    let interval = |interval: &Interval| json!([interval.low, interval.high]);
     let intervals = |of: &Plausibility| {
         json!({
-            "energy_j": interval(&of.energy_j),
-            "motion_energy_j": interval(&of.motion_energy_j),
+            "energy_j": interval(of.energy_j),
+            "motion_energy_j": interval(of.motion_energy_j),
             "energy_median_j": of.energy_j.median,
             "motion_energy_median_j": of.motion_energy_j.median,
         })
@@ -64,7 +64,7 @@ pub fn text(calibrated: &Calibrated, path: &str) -> String {
             out,
             "what it leaves is {:.1} times the noise of the log: intervals are as much wider{}",
             misfit.sqrt(),
-            if misfit.sqrt() > FAR_OFF {
+            if misfit.sqrt() > MAX_MISFIT {
                 ". So much is rare: check waits, inputs and columns"
             } else {
                 ""
@@ -88,7 +88,7 @@ pub fn text(calibrated: &Calibrated, path: &str) -> String {
     let motion = change("of which motions", &before.motion_energy_j, &after.motion_energy_j);
     let _ = writeln!(out, "{motion}");
     let groups: Vec<String> = narrower(calibrated)
-        .take(NAMED)
+        .take(MAX_GROUPS)
         .map(|(group, left)| format!("{group} {:.0} %", 100.0 * left))
         .collect();
     if !groups.is_empty() {
@@ -100,5 +100,5 @@ pub fn text(calibrated: &Calibrated, path: &str) -> String {
 }
 
 fn narrower(calibrated: &Calibrated) -> impl Iterator<Item = &(String, f64)> {
-    calibrated.narrowed.iter().filter(|(_, left)| *left < NARROWER)
+    calibrated.narrowed.iter().filter(|(_, left)| *left < MAX_RATIO)
 }

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use crate::gap::{Diagnosis, Interval, Place, Said, Verdict};
@@ -24,7 +25,7 @@ pub struct Basis {
 /// The JSON of the stable interface.
 #[must_use]
 pub fn json(found: &Diagnosis, basis: &Basis) -> Value {
-    let all = |of: &[Said]| -> Vec<Value> { of.iter().map(said).collect() };
+    let all = |of: &[Said]| -> Vec<Value> { of.iter().map(effect).collect() };
     let generic = found.anything.iter().map(|of| {
         json!({
             "id": of.id,
@@ -39,8 +40,7 @@ pub fn json(found: &Diagnosis, basis: &Basis) -> Value {
         "generic": generic.collect::<Vec<_>>(),
         "where": found.places.iter().map(place).collect::<Vec<_>>(),
         "gap": gap(found, basis),
-        "next_experiment": next(found, basis)
-            .map(|(why, command)| json!({"why": why, "command": command})),
+        "next_experiment": next(found, basis),
         "model_error_percent": 100.0 * found.error,
         "null_nats": found.chance,
         "reasons": found.reasons,
@@ -113,20 +113,17 @@ fn interval(of: &Interval) -> Value {
     json!({"value": 100.0 * of.value, "low": 100.0 * of.low, "high": 100.0 * of.high})
 }
 
-fn said(of: &Said) -> Value {
-    let mut parameters = Map::new();
-    for parameter in &of.parameters {
-        parameters.insert(
-            parameter.name.clone(),
-            json!({"value": parameter.value, "sd": parameter.sd, "unit": parameter.unit}),
-        );
-    }
+fn effect(of: &Said) -> Value {
+    let parameters = of
+        .parameters
+        .iter()
+        .map(|of| (of.name.clone(), json!({"value": of.value, "sd": of.sd, "unit": of.unit})));
     json!({
         "id": of.effect.id,
         "joints": of.joints.iter().map(|joint| joint + 1).collect::<Vec<_>>(),
         "class": of.class,
         "probability": of.probability,
-        "parameters": parameters,
+        "parameters": parameters.collect::<Map<_, _>>(),
         "share_percent": 100.0 * of.share,
         "nats": of.nats,
         "size_percent": 100.0 * of.size,
@@ -134,7 +131,14 @@ fn said(of: &Said) -> Value {
 }
 
 /// The next experiment: reason and command.
-pub(super) fn next(found: &Diagnosis, basis: &Basis) -> Option<(String, String)> {
+#[derive(Serialize)]
+pub(super) struct Experiment {
+    why: String,
+    command: String,
+}
+
+/// The next experiment, if one would tell more.
+pub(super) fn next(found: &Diagnosis, basis: &Basis) -> Option<Experiment> {
     let unclear = found.candidates.iter().chain(&found.effects).find(|of| {
         of.class.len() > 1
             || found.verdict != Verdict::Effect && !of.effect.experiment[1].is_empty()
@@ -143,7 +147,8 @@ pub(super) fn next(found: &Diagnosis, basis: &Basis) -> Option<(String, String)>
         let [options, why] = of.effect.experiment;
         let robot = quoted(&basis.robot);
         let command = format!("joulepath excite --robot {robot} --out excitation {options}");
-        (format!("{}: {why}", of.effect.id), command.trim_end().to_owned())
+        let command = command.trim_end().to_owned();
+        Experiment { why: format!("{}: {why}", of.effect.id), command }
     })
 }
 
@@ -181,8 +186,16 @@ pub fn called(of: &Said) -> String {
 }
 
 /// The same with its probability.
-fn weighed(of: &Said) -> String {
+fn with_probability(of: &Said) -> String {
     format!("{}, probability {:.2}, {:.0} nats", called(of), of.probability, of.nats)
+}
+
+/// What the gap depends on beside the effects.
+pub(super) fn unknown(found: &Diagnosis) -> impl Iterator<Item = String> {
+    found.anything.iter().map(|of| {
+        let joint = of.joint.map_or_else(String::new, |joint| format!(" of joint {}", joint + 1));
+        format!("a function of the {}{joint}", of.id.replace('_', " "))
+    })
 }
 
 /// The result as text.
@@ -191,7 +204,7 @@ pub fn text(found: &Diagnosis, basis: &Basis) -> String {
     let mut out = String::new();
     let _ = writeln!(out, "{}", sentence(found.verdict));
     for of in &found.effects {
-        let _ = writeln!(out, "\nfound: {}", weighed(of));
+        let _ = writeln!(out, "\nfound: {}", with_probability(of));
         if of.class.len() > 1 {
             let _ = writeln!(out, "  cannot be told apart: {}", of.class.join(", "));
         }
@@ -209,11 +222,10 @@ pub fn text(found: &Diagnosis, basis: &Basis) -> String {
         out.push('\n');
     }
     for of in &found.candidates {
-        let _ = writeln!(out, "considered: {}", weighed(of));
+        let _ = writeln!(out, "considered: {}", with_probability(of));
     }
-    for of in &found.anything {
-        let joint = of.joint.map_or_else(String::new, |joint| format!(" of joint {}", joint + 1));
-        let _ = writeln!(out, "unknown: a function of the {}{joint}", of.id.replace('_', " "));
+    for text in unknown(found) {
+        let _ = writeln!(out, "unknown: {text}");
     }
     for reason in &found.reasons {
         let _ = writeln!(out, "not asserted: {reason}");
@@ -243,7 +255,7 @@ pub fn text(found: &Diagnosis, basis: &Basis) -> String {
             writeln!(out, "the gap shrinks, {name}: {value:.1} % ({low:.1} to {high:.1})")
         };
     }
-    if let Some((why, command)) = next(found, basis) {
+    if let Some(Experiment { why, command }) = next(found, basis) {
         let _ = writeln!(out, "next: {why}\n  {command}");
     }
     if !basis.model.is_empty() {

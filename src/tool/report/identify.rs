@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use crate::arm::dynamics::{JOINT, RIGID, parameter_name};
@@ -111,17 +112,29 @@ pub fn json(found: &Identified, basis: &Basis, path: &str) -> Value {
     })
 }
 
-/// The parameters that the data determine, with their standard deviations.
-fn base_parameters(found: &Identified) -> Vec<Value> {
+/// A parameter that the data determine.
+#[derive(Serialize)]
+pub(super) struct Parameter {
+    #[serde(skip)]
+    pub(super) row: usize,
+    pub(super) name: String,
+    pub(super) value: f64,
+    /// Standard deviation.
+    pub(super) sd: f64,
+}
+
+/// The parameters that the data determine.
+pub(super) fn base_parameters(found: &Identified) -> Vec<Parameter> {
     let fit = &found.fit;
-    let parameter = |(k, row): (usize, &usize)| {
-        json!({
-            "name": found.name(*row),
-            "value": fit.solution.beta[*row],
-            "sd": fit.covariance[(k, k)].max(0.0).sqrt(),
+    let determined = fit.solution.determined.iter().enumerate();
+    determined
+        .map(|(k, row)| Parameter {
+            row: *row,
+            name: found.name(*row),
+            value: fit.solution.beta[*row],
+            sd: fit.covariance[(k, k)].max(0.0).sqrt(),
         })
-    };
-    fit.solution.determined.iter().enumerate().map(parameter).collect()
+        .collect()
 }
 
 fn logs(logs: &[LogRecord]) -> Vec<Value> {
@@ -165,66 +178,53 @@ fn whiteness(found: &Identified) -> Vec<Value> {
     found.fit.whiteness.iter().enumerate().map(joint).collect()
 }
 
-/// The undetermined parameters in words.
-pub fn undetermined(found: &Identified) -> Vec<Value> {
-    let resting = |joint: usize| found.resting.contains(&joint);
-    let fit = &found.fit;
-    fit.solution
-        .dependent
-        .iter()
-        .map(|(row, parts)| {
-            let index = found.base.independent[*row];
-            let rigid = RIGID * found.base.dof;
-            let joint = if index < rigid { index / RIGID } else { (index - rigid) / JOINT };
-            let why = if resting(joint) {
-                format!("joint {} was not excited", joint + 1)
-            } else if parts.is_empty() {
-                "the motion has no torque of it".to_owned()
-            } else {
-                let with: Vec<String> = parts
-                    .iter()
-                    .map(|(of, _)| parameter_name(found.base.dof, found.base.independent[*of]))
-                    .collect();
-                format!("the motion does not tell it from {}", with.join(", "))
-            };
-            json!({"name": found.base.name(*row), "joint": joint + 1, "why": why})
-        })
-        .collect()
+/// An undetermined parameter, with the reason in words.
+#[derive(Serialize)]
+pub(super) struct Missing {
+    name: String,
+    joint: usize,
+    why: String,
+}
+
+/// The undetermined parameters.
+pub(super) fn undetermined(found: &Identified) -> Vec<Missing> {
+    let name = |row: &usize| parameter_name(found.base.dof, found.base.independent[*row]);
+    let missing = found.fit.solution.dependent.iter().map(|(row, parts)| {
+        let index = found.base.independent[*row];
+        let rigid = RIGID * found.base.dof;
+        let joint = if index < rigid { index / RIGID } else { (index - rigid) / JOINT };
+        let why = if found.resting.contains(&joint) {
+            format!("joint {} was not excited", joint + 1)
+        } else if parts.is_empty() {
+            "the motion has no torque of it".to_owned()
+        } else {
+            let with: Vec<String> = parts.iter().map(|(of, _)| name(of)).collect();
+            format!("the motion does not tell it from {}", with.join(", "))
+        };
+        Missing { name: found.base.name(*row), joint: joint + 1, why }
+    });
+    missing.collect()
 }
 
 /// Rotor inertia, friction and offset of each joint with their intervals.
 fn joints(found: &Identified) -> Vec<Value> {
-    let fit = &found.fit;
-    let rigid = RIGID * found.base.dof;
-    (0..found.base.dof)
-        .map(|joint| {
-            let mut entry = Map::new();
-            entry.insert("joint".into(), json!(joint + 1));
-            entry.insert("excited".into(), json!(!found.resting.contains(&joint)));
-            for (kind, key) in JOINT_KEYS.iter().enumerate() {
-                let index = rigid + JOINT * joint + kind;
-                let row = found
-                    .base
-                    .independent
-                    .iter()
-                    .position(|known| *known == index)
-                    .filter(|row| found.name(*row) == found.base.name(*row));
-                let place = row.and_then(|row| {
-                    let k = fit.solution.determined.iter().position(|known| *known == row)?;
-                    Some((row, k))
-                });
-                let value = place.map(|(row, k)| {
-                    json!({
-                        "value": fit.solution.beta[row],
-                        "sd": fit.covariance[(k, k)].max(0.0).sqrt(),
-                        "unit": JOINT_UNITS[kind],
-                    })
-                });
-                entry.insert((*key).into(), value.unwrap_or(Value::Null));
-            }
-            Value::Object(entry)
-        })
-        .collect()
+    let base = &found.base;
+    let determined = base_parameters(found);
+    let joint = |joint: usize| {
+        let mut entry = Map::new();
+        entry.insert("joint".into(), json!(joint + 1));
+        entry.insert("excited".into(), json!(!found.resting.contains(&joint)));
+        for (kind, (key, unit)) in JOINT_KEYS.iter().zip(JOINT_UNITS).enumerate() {
+            let index = RIGID * base.dof + JOINT * joint + kind;
+            let row = base.independent.iter().position(|known| *known == index);
+            let row = row.filter(|row| found.name(*row) == base.name(*row));
+            let parameter = determined.iter().find(|it| Some(it.row) == row);
+            let value = parameter.map(|it| json!({ "value": it.value, "sd": it.sd, "unit": unit }));
+            entry.insert((*key).into(), json!(value));
+        }
+        Value::Object(entry)
+    };
+    (0..base.dof).map(joint).collect()
 }
 
 fn source(source: &Source) -> Value {
@@ -261,7 +261,8 @@ pub fn toml(found: &Identified, basis: &Basis) -> String {
         let _ = write!(
             text,
             "\n[[identification.not_determined]]\nname = {}\nwhy = {}\n",
-            entry["name"], entry["why"]
+            quoted(&entry.name),
+            quoted(&entry.why)
         );
     }
     for LogRecord { path, hash, rows, left_out } in &basis.logs {
@@ -272,13 +273,11 @@ pub fn toml(found: &Identified, basis: &Basis) -> String {
             quoted(path)
         );
     }
-    for (k, row) in found.fit.solution.determined.iter().enumerate() {
+    for Parameter { name, value, sd, .. } in base_parameters(found) {
         let _ = write!(
             text,
-            "\n[[identification.base_parameter]]\nname = {}\nvalue = {:?}\nsd = {:?}\n",
-            quoted(&found.name(*row)),
-            found.fit.solution.beta[*row],
-            found.fit.covariance[(k, k)].max(0.0).sqrt()
+            "\n[[identification.base_parameter]]\nname = {}\nvalue = {value:?}\nsd = {sd:?}\n",
+            quoted(&name)
         );
     }
     text
@@ -347,21 +346,14 @@ pub fn text(found: &Identified, basis: &Basis) -> String {
         );
     }
     let _ = writeln!(text, "\n{:>12} {:>12}  parameter", "value", "sd");
-    for (k, row) in fit.solution.determined.iter().enumerate() {
-        let _ = writeln!(
-            text,
-            "{:>12.5} {:>12.5}  {}",
-            fit.solution.beta[*row],
-            fit.covariance[(k, k)].max(0.0).sqrt(),
-            found.name(*row)
-        );
+    for Parameter { name, value, sd, .. } in base_parameters(found) {
+        let _ = writeln!(text, "{value:>12.5} {sd:>12.5}  {name}");
     }
     let missing = undetermined(found);
     if !missing.is_empty() {
         text.push_str("\nnot determined:\n");
-        for entry in missing {
-            let part = |key: &str| entry[key].as_str().unwrap_or_default().to_owned();
-            let _ = writeln!(text, "  {}: {}", part("name"), part("why"));
+        for Missing { name, why, .. } in missing {
+            let _ = writeln!(text, "  {name}: {why}");
         }
     }
     text

@@ -1,16 +1,15 @@
 //! The JSON of `simulate` and `optimize`. The field names are a stable interface.
 
-use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::mark::mark;
 use super::place::Places;
-use super::simulated::Simulated;
+use super::simulated::{Simulated, StepKind};
 use crate::arm::robot::Model;
 use crate::retime::energy::EnergyParts;
 use crate::retime::energy::plausible::{Contribution, Interval};
 use crate::retime::motion::Simulation;
-use crate::retime::motion::timeline::{WaitBasis, What};
+use crate::retime::motion::timeline::WaitBasis;
 use crate::retime::optimize::check::Check;
 use crate::retime::optimize::energy_curve::TimeEnergy;
 use crate::tool::retrofit::{
@@ -19,29 +18,16 @@ use crate::tool::retrofit::{
 };
 
 /// The six energy parts, or nulls for a robot without dynamics.
-#[derive(Serialize)]
-#[expect(clippy::struct_field_names, reason = "the names are the contract's")]
-struct Parts {
-    mechanical_j: Option<f64>,
-    friction_j: Option<f64>,
-    copper_j: Option<f64>,
-    drive_j: Option<f64>,
-    idle_j: Option<f64>,
-    brake_j: Option<f64>,
-}
-
-impl Parts {
-    fn new(parts: &EnergyParts, known: bool) -> Parts {
-        let value = |x: f64| known.then_some(x);
-        Parts {
-            mechanical_j: value(parts.mechanical_j),
-            friction_j: value(parts.friction_j),
-            copper_j: value(parts.copper_j),
-            drive_j: value(parts.drive_j),
-            idle_j: value(parts.idle_j),
-            brake_j: value(parts.brake_j),
-        }
-    }
+fn energy_parts(parts: &EnergyParts, known: bool) -> Value {
+    let value = |x: f64| known.then_some(x);
+    json!({
+        "mechanical_j": value(parts.mechanical_j),
+        "friction_j": value(parts.friction_j),
+        "copper_j": value(parts.copper_j),
+        "drive_j": value(parts.drive_j),
+        "idle_j": value(parts.idle_j),
+        "brake_j": value(parts.brake_j),
+    })
 }
 
 /// The result of `simulate`.
@@ -50,37 +36,34 @@ pub fn simulation(of: Simulated<'_>, places: Places<'_>, notes: &[String]) -> Va
     let known = model.has_dynamics();
     let mut moves = Vec::new();
     let mut waits = Vec::new();
-    for (event, parts) in simulation.events.iter().zip(&account.events) {
-        match &event.what {
-            What::Run(run) => {
-                for (record, part) in run.moves.iter().zip(parts) {
-                    let place = places.of(record.movement.span);
-                    moves.push(json!({
-                        "file": place.file,
-                        "line": place.first,
-                        "instruction": &*record.movement.instruction,
-                        "routine": &*record.movement.routine,
-                        "t_start_s": event.t_start + record.t_start,
-                        "duration_s": record.duration,
-                        "energy_j": known.then(|| part.energy_j()),
-                        "limit": record.pace.name(),
-                        "mark": mark(&record.movement),
-                    }));
-                }
-            }
-            What::Wait(wait) => {
-                let place = places.of(wait.wait.span);
-                waits.push(json!({
-                    "file": place.file,
-                    "line": place.first,
-                    "instruction": &*wait.wait.instruction,
-                    "t_start_s": event.t_start,
-                    "duration_s": event.duration,
-                    "basis": basis(wait.basis),
-                    "energy_j": known.then(|| parts.iter().map(EnergyParts::energy_j).sum::<f64>()),
-                }));
-            }
-            What::Output(..) | What::Left(_) => {}
+    for step in of.steps() {
+        let place = places.of(step.span);
+        let energy_j = known.then_some(step.energy_j);
+        match step.kind {
+            StepKind::Move(record) => moves.push(json!({
+                "file": place.file,
+                "line": place.first,
+                "instruction": step.instruction,
+                "routine": step.routine,
+                "t_start_s": step.t_start,
+                "duration_s": step.duration,
+                "energy_j": energy_j,
+                "limit": record.pace.name(),
+                "mark": mark(&record.movement),
+            })),
+            StepKind::Wait(basis) => waits.push(json!({
+                "file": place.file,
+                "line": place.first,
+                "instruction": step.instruction,
+                "t_start_s": step.t_start,
+                "duration_s": step.duration,
+                "basis": match basis {
+                    WaitBasis::Stated => "stated",
+                    WaitBasis::Input => "input",
+                    WaitBasis::Unknown => "unknown",
+                },
+                "energy_j": energy_j,
+            })),
         }
     }
     json!({
@@ -95,7 +78,7 @@ pub fn simulation(of: Simulated<'_>, places: Places<'_>, notes: &[String]) -> Va
         "motion_energy_median_j": plausible.map(|p| p.motion_energy_j.median),
         "torque_median_nm": plausible.map(|p| p.torque_nm.iter().map(|x| x.median).collect::<Vec<f64>>()),
         "torque_interval_nm": plausible.map(|p| p.torque_nm.iter().map(|x| interval(*x)).collect::<Vec<_>>()),
-        "energy": Parts::new(&account.total, known),
+        "energy": energy_parts(&account.total, known),
         "estimated": plausible.map_or_else(Vec::new, |p| estimated(&p.contributions)),
         "moves": moves,
         "waits": waits,
@@ -106,7 +89,7 @@ pub fn simulation(of: Simulated<'_>, places: Places<'_>, notes: &[String]) -> Va
 }
 
 /// `[low, high]`: the interval of 90 % of the plausible robots.
-fn interval(interval: Interval) -> [f64; 2] {
+pub(super) fn interval(interval: Interval) -> [f64; 2] {
     [interval.low, interval.high]
 }
 
@@ -119,14 +102,6 @@ pub(super) fn estimated(parts: &[Contribution]) -> Vec<Value> {
         })
     };
     parts.iter().map(value).collect()
-}
-
-fn basis(basis: WaitBasis) -> &'static str {
-    match basis {
-        WaitBasis::Stated => "stated",
-        WaitBasis::Input => "input",
-        WaitBasis::Unknown => "unknown",
-    }
 }
 
 /// The JSON field `unresolved`.
@@ -235,7 +210,7 @@ fn lower_limits(lower: &LowerLimits) -> Value {
     })
 }
 
-fn signal(signal: &SignalShift) -> Value {
+pub(super) fn signal(signal: &SignalShift) -> Value {
     json!({
         "name": signal.name,
         "kind": match signal.kind {
@@ -294,7 +269,7 @@ fn segment_value(places: Places<'_>, segment: &Segment) -> Value {
     value
 }
 
-fn file(output: &OutputFile) -> Value {
+pub(super) fn file(output: &OutputFile) -> Value {
     json!({
         "path": output.path,
         "kind": match output.kind {

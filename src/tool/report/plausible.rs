@@ -18,8 +18,7 @@ pub(super) fn energies(plausible: &Plausibility) -> Vec<String> {
 /// The saving of a retrofit, and the contributions to its interval; empty without uncertainty or
 /// rewritten segments.
 pub(super) fn saving(retrofit: &Retrofit) -> Vec<String> {
-    let is_rewritten = retrofit.segments.iter().any(|segment| segment.rewritten);
-    let Some(uncertainty) = retrofit.uncertainty.as_ref().filter(|_| is_rewritten) else {
+    let Some(uncertainty) = retrofit.uncertainty.as_ref().filter(|_| is_rewritten(retrofit)) else {
         return Vec::new();
     };
     let range =
@@ -31,6 +30,11 @@ pub(super) fn saving(retrofit: &Retrofit) -> Vec<String> {
         range(all),
     );
     std::iter::once(saving).chain(contributions(&uncertainty.contributions)).collect()
+}
+
+/// Whether anything was changed.
+pub(super) fn is_rewritten(retrofit: &Retrofit) -> bool {
+    retrofit.segments.iter().any(|segment| segment.rewritten)
 }
 
 /// The contributions to an interval, and data that would narrow it.

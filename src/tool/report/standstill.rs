@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::json::estimated;
+use super::json::{estimated, interval};
 use super::place::Place;
 use super::plausible::contributions;
 use super::table::{Align, table};
@@ -34,13 +34,11 @@ pub fn json(model: &Model, poses: &[Pose], assumed: &[String]) -> Value {
                 "best_nearby": { "q_deg": degrees(&standing.best), "holding_w": standing.best_w },
             });
             if let Some(range) = &standing.plausible {
-                let pair = |x: &Interval| [x.low, x.high];
-                value["holding_interval_w"] = json!(pair(&range.holding_w));
+                value["holding_interval_w"] = json!(interval(range.holding_w));
                 value["holding_median_w"] = json!(range.holding_w.median);
-                value["break_even_median_s"] =
-                    json!(range.break_even_s.as_ref().map(|range| range.median));
+                value["break_even_median_s"] = json!(range.break_even_s.map(|range| range.median));
                 value["estimated"] = json!(estimated(&range.contributions));
-                value["break_even_interval_s"] = json!(range.break_even_s.as_ref().map(pair));
+                value["break_even_interval_s"] = json!(range.break_even_s.map(interval));
             }
             if let Some((place, duration)) = &pose.dwell {
                 value["file"] = json!(place.file);

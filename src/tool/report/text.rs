@@ -4,57 +4,37 @@ use std::fmt::Write;
 
 use super::mark::mark;
 use super::place::Places;
-use super::plausible::{energies, saving};
-use super::simulated::Simulated;
+use super::plausible::{energies, is_rewritten, saving};
+use super::simulated::{Simulated, Step, StepKind};
 use super::table::{Align, table};
 use crate::arm::robot::prior::is_mass_known;
 use crate::arm::robot::{Model, Provenance};
 use crate::rapid::ir::movement::Movement;
-use crate::retime::energy::EnergyParts;
 use crate::retime::motion::Simulation;
-use crate::retime::motion::timeline::{WaitBasis, What};
+use crate::retime::motion::timeline::WaitBasis;
 use crate::tool::retrofit::{LowerLimits, Retrofit, Segment, SegmentKind};
 
 /// The table of a simulation.
 pub fn simulation(of: Simulated<'_>, places: Places<'_>) -> String {
     let Simulated { model, simulation, account, plausible, .. } = of;
     let known = model.has_dynamics();
-    let joules = |parts: &EnergyParts| {
-        if known { format!("{:.1}", parts.energy_j()) } else { "-".to_owned() }
+    let row = |step: Step<'_>| {
+        let instruction = match step.kind {
+            StepKind::Move(record) => marked(&record.movement),
+            StepKind::Wait(WaitBasis::Stated) => step.instruction.to_owned(),
+            StepKind::Wait(WaitBasis::Input) => format!("{} (input)", step.instruction),
+            StepKind::Wait(WaitBasis::Unknown) => format!("{} (unknown)", step.instruction),
+        };
+        vec![
+            places.of(step.span).to_string(),
+            instruction,
+            step.routine.to_owned(),
+            format!("{:.3}", step.t_start),
+            format!("{:.3}", step.duration),
+            if known { format!("{:.1}", step.energy_j) } else { "-".to_owned() },
+        ]
     };
-    let mut rows = Vec::new();
-    for (event, parts) in simulation.events.iter().zip(&account.events) {
-        match &event.what {
-            What::Run(run) => {
-                for (record, part) in run.moves.iter().zip(parts) {
-                    rows.push(vec![
-                        places.of(record.movement.span).to_string(),
-                        marked(&record.movement),
-                        record.movement.routine.to_string(),
-                        format!("{:.3}", event.t_start + record.t_start),
-                        format!("{:.3}", record.duration),
-                        joules(part),
-                    ]);
-                }
-            }
-            What::Wait(wait) => {
-                let basis = match wait.basis {
-                    WaitBasis::Stated => "",
-                    WaitBasis::Input => " (input)",
-                    WaitBasis::Unknown => " (unknown)",
-                };
-                rows.push(vec![
-                    places.of(wait.wait.span).to_string(),
-                    format!("{}{basis}", wait.wait.instruction),
-                    wait.wait.routine.to_string(),
-                    format!("{:.3}", event.t_start),
-                    format!("{:.3}", event.duration),
-                    joules(&parts[0]),
-                ]);
-            }
-            What::Output(..) | What::Left(_) => {}
-        }
-    }
+    let rows: Vec<Vec<String>> = of.steps().into_iter().map(row).collect();
     let mut out = table(
         &[
             ("place", Align::Left),
@@ -246,10 +226,6 @@ fn headline(model: &Model, retrofit: &Retrofit) -> String {
         1e3 * worst.polygon_m,
         worst.endpoint_error_rad,
     )
-}
-
-fn is_rewritten(retrofit: &Retrofit) -> bool {
-    retrofit.segments.iter().any(|segment| segment.rewritten)
 }
 
 /// Cost of the guards, lower limits, and possible savings by settings of the controller.

@@ -31,14 +31,11 @@
 //! ## Assumptions
 //! The input comes when `--input` or the configuration says.
 
-use std::sync::Arc;
-
 use super::super::context::Context;
-use super::super::rule::{Applicability, Finding, Fix};
-use super::super::saving::Weighed;
-use super::super::trace::Action;
+use super::super::edits::with_acceleration;
+use super::super::rule::Finding;
+use super::super::saving::Saving;
 use super::racing_to_wait::{run_of, slower_run, waits_behind};
-use crate::rapid::ir::movement::{Movement, Settings};
 use crate::rapid::text::{Edit, Span};
 use crate::retime::motion::Step;
 
@@ -47,7 +44,7 @@ rule!("EW203", "accelerated-to-wait", Speed, Robot, Info, "accelerated_to_wait.r
 /// Shares of the acceleration that are tried, %.
 const TRIED: [u32; 3] = [70, 50, 30];
 /// Rounding of a time, s.
-const LATE: f64 = 1e-6;
+const ROUNDING: f64 = 1e-6;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     for (index, site) in context.sites.iter().enumerate() {
@@ -61,63 +58,41 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         {
             continue;
         }
-        let mut best: Option<(u32, Weighed, f64)> = None;
+        let times = site.executions.len() as f64;
+        let mut best: Option<(u32, Saving)> = None;
         for percent in TRIED {
-            let share = f64::from(percent) / 100.0;
-            let change = |step: &Step| with_acceleration(step, share, None);
-            let times = site.executions.len() as f64;
+            let change = |step: &Step| with_acceleration(step, f64::from(percent) / 100.0, None);
             let difference = context.difference(&[site.stmt.span], &change);
-            let Some(difference) = difference.filter(|it| it.longer_s <= slack * times) else {
-                continue;
-            };
-            let weighed = difference.weighed();
-            let Weighed::Saves(saving) = weighed else { continue };
-            let more = best.as_ref().is_none_or(|(_, _, most)| saving.energy_j > *most);
-            if saving.time_s >= -LATE && more {
-                best = Some((percent, weighed, saving.energy_j));
+            let difference = difference.filter(|it| it.longer_s <= slack * times);
+            let Some(Ok(saving)) = difference.map(|it| it.saving()) else { continue };
+            let most = best.map_or(f64::NEG_INFINITY, |(_, best)| best.energy_j);
+            if saving.time_s >= -ROUNDING && saving.energy_j > most {
+                best = Some((percent, saving));
             }
         }
-        let Some((percent, Weighed::Saves(saving), _)) = best else { continue };
-        let message = format!("{} accelerates at its hardest to wait for {signal}", site.name);
-        let mut finding = Finding::new(&RULE, site.stmt.span, message);
-        finding.change =
-            format!("AccSet {percent},100 before this movement and AccSet 100,100 behind it");
-        finding.saving = Some(saving);
-        finding.assumptions.push(format!("{signal} comes when --input says"));
+        let Some((percent, saving)) = best else { continue };
         let Span { start, end, .. } = site.stmt.span;
-        let before = format!("AccSet {percent},100; ").into_bytes();
-        let edits = vec![
-            Edit { span: Span { end: start, ..site.stmt.span }, text: before },
-            Edit {
-                span: Span { start: end, ..site.stmt.span },
-                text: b" AccSet 100,100;".to_vec(),
-            },
-        ];
-        finding.fix = Some(Fix { applicability: Applicability::Unsafe, edits });
+        let insertion = |at, text: String| Edit {
+            span: Span { start: at, end: at, ..site.stmt.span },
+            text: text.into_bytes(),
+        };
+        let message = format!("{} accelerates at its hardest to wait for {signal}", site.name);
+        let change =
+            format!("AccSet {percent},100 before this movement and AccSet 100,100 behind it");
+        let finding = Finding::new(&RULE, site.stmt.span, message)
+            .with_saving(change, saving)
+            .with_assumption(format!("{signal} comes when --input says"))
+            .with_unsafe_fix([
+                insertion(start, format!("AccSet {percent},100; ")),
+                insertion(end, " AccSet 100,100;".to_owned()),
+            ]);
         findings.push(finding);
     }
 }
 
 /// Whether all movements have full acceleration.
 fn is_full(context: &Context<'_>, index: usize) -> bool {
-    context.sites[index].executions.iter().all(|step| match &context.trace[*step].what {
-        Action::Move(movement) => {
-            let settings = &movement.settings;
-            settings.acceleration == 1.0 && settings.ramp == 1.0 && settings.fine_point_ramp == 1.0
-        }
-        _ => false,
+    context.always(index, |settings| {
+        settings.acceleration == 1.0 && settings.ramp == 1.0 && settings.fine_point_ramp == 1.0
     })
-}
-
-/// A movement with another acceleration and, if it is given, another ramp (1 = 100 %).
-pub(super) fn with_acceleration(step: &Step, share: f64, ramp: Option<f64>) -> Vec<Step> {
-    match step {
-        Step::Move(movement) => {
-            let before = Settings::clone(&movement.settings);
-            let ramp = ramp.unwrap_or(before.ramp);
-            let settings = Arc::new(Settings { acceleration: share, ramp, ..before });
-            vec![Step::Move(Box::new(Movement { settings, ..(**movement).clone() }))]
-        }
-        other => vec![other.clone()],
-    }
 }

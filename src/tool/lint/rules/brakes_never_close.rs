@@ -38,7 +38,7 @@ use crate::retime::motion::timeline::What;
 rule!("EW801", "brakes-never-close", System, Backup, Info, "brakes_never_close.rs");
 
 /// Waits from here on are long, s.
-const LONG: f64 = 20.0;
+const MIN_WAIT: f64 = 20.0;
 /// The parameter.
 const TIMEOUT: &str = "brake_on_timeout";
 
@@ -47,28 +47,29 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     if motion.is_none_or(|motion| motion.to_lowercase().contains(TIMEOUT)) {
         return;
     }
-    let mut told: BTreeSet<Span> = BTreeSet::new();
-    for done in &context.trace {
+    let mut reported: BTreeSet<Span> = BTreeSet::new();
+    for (step, done) in context.trace.iter().enumerate() {
         let Action::Wait(wait, _) = &done.what else { continue };
-        if done.duration < LONG || told.contains(&wait.span) {
+        if done.duration < MIN_WAIT || !reported.insert(wait.span) {
             continue;
         }
-        let spared = || {
-            let (event, _) = done.event?;
-            let model = context.model.filter(|model| model.has_dynamics())?;
-            let What::Wait(record) = &context.cycle?.simulation.events[event].what else {
-                return None;
-            };
-            let holding: f64 = holding_w(model, &record.load, &record.q).iter().sum();
-            let spared = spared_j(model, holding, done.duration);
-            (spared > 0.0).then(|| format!("; closed as it waits, they would spare {spared:.0} J"))
-        };
+        let saving = brake_saving(context, step, done.duration)
+            .map(|saving| format!("; closed as it waits, they would spare {saving:.0} J"));
         let message = format!(
             "the robot waits {:.0} s and MOC.cfg states no {TIMEOUT}: the brakes stay open{}",
             done.duration,
-            spared().unwrap_or_default()
+            saving.unwrap_or_default()
         );
-        told.insert(wait.span);
         findings.push(Finding::new(&RULE, wait.span, message));
     }
+}
+
+/// What closed brakes would save in `duration` s where the robot stands in a step, J, if that is
+/// known and anything.
+pub(super) fn brake_saving(context: &Context<'_>, step: usize, duration: f64) -> Option<f64> {
+    let (event, _) = context.trace[step].event?;
+    let model = context.model.filter(|model| model.has_dynamics())?;
+    let What::Wait(wait) = &context.cycle?.simulation.events[event].what else { return None };
+    let holding: f64 = holding_w(model, &wait.load, &wait.q).iter().sum();
+    Some(spared_j(model, holding, duration)).filter(|saving| *saving > 0.0)
 }

@@ -31,7 +31,7 @@
 
 use super::super::context::Context;
 use super::super::rule::Finding;
-use super::super::trace::{Action, TraceStep};
+use super::super::trace::TraceStep;
 use crate::arm::kinematics::{Conf, ik_conf};
 use crate::rapid::builtins::MoveForm;
 use crate::rapid::ir::movement::Target;
@@ -39,7 +39,7 @@ use crate::rapid::ir::movement::Target;
 rule!("EW604", "conf-off-jump", Settings, Robot, Warning, "conf_off_jump.rs");
 
 /// More than half a turn, which only leads to the other solution of the wrist, rad.
-const TURN: f64 = 1.25 * std::f64::consts::PI;
+const MIN_TURN: f64 = 1.25 * std::f64::consts::PI;
 /// Axes that can turn by whole turns: 4 and 6.
 const AXES: [usize; 2] = [3, 5];
 
@@ -63,7 +63,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             let [cf1, cf4, cf6, cfx] = target.conf;
             let conf = Conf { cf1, cf4, cf6, cfx };
             let stated = ik_conf(model, &leg.tool.flange(&leg.target), conf).ok()?;
-            let far = |axis: &usize| (leg.end[*axis] - stated[*axis]).abs() > TURN;
+            let far = |axis: &usize| (leg.end[*axis] - stated[*axis]).abs() > MIN_TURN;
             AXES.into_iter().find(far).map(|axis| (axis, leg.end[axis] - stated[axis]))
         });
         let Some((axis, off)) = jump else { continue };
@@ -79,12 +79,9 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
 
 /// Whether a movement goes to the configuration that is stated for it.
 fn keeps(done: &TraceStep<'_>) -> bool {
-    match &done.what {
-        Action::Move(movement) => match movement.form {
-            MoveForm::AbsJ => true,
-            MoveForm::Joint => movement.settings.conf_joint,
-            _ => movement.settings.conf_linear,
-        },
-        _ => false,
-    }
+    done.what.movement().is_some_and(|movement| match movement.form {
+        MoveForm::AbsJ => true,
+        MoveForm::Joint => movement.settings.conf_joint,
+        _ => movement.settings.conf_linear,
+    })
 }

@@ -39,9 +39,9 @@ use std::collections::BTreeSet;
 use super::super::context::Context;
 use super::super::flow::Class;
 use super::super::rule::Finding;
-use crate::rapid::builtins::{self, Instruction, MoveForm};
-use crate::rapid::ir::graph::Step;
-use crate::rapid::ir::hir::{Callee, RoutineKind, Scope, Stmt, StmtKind};
+use super::super::statements::called_instruction;
+use crate::rapid::builtins::{Instruction, MoveForm};
+use crate::rapid::ir::hir::{RoutineKind, Scope, StmtKind};
 use crate::rapid::ir::program::{RoutineId, Symbol};
 
 rule!("EW702", "dead-procedure", Program, Text, Info, "dead_procedure.rs");
@@ -71,16 +71,6 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     }
 }
 
-/// The statements of a routine.
-fn statements<'c>(context: &Context<'c>, id: RoutineId) -> Vec<&'c Stmt> {
-    let nodes = context.flow.graph(id).nodes.iter();
-    let statement = |step: &Step<'c>| match step {
-        Step::Statement(stmt) => Some(*stmt),
-        _ => None,
-    };
-    nodes.filter_map(|node| statement(&node.step)).collect()
-}
-
 /// Routines that the program or an interrupt reaches.
 fn running(context: &Context<'_>, entry: RoutineId) -> BTreeSet<RoutineId> {
     let mut found = BTreeSet::new();
@@ -89,7 +79,7 @@ fn running(context: &Context<'_>, entry: RoutineId) -> BTreeSet<RoutineId> {
         if !found.insert(id) {
             continue;
         }
-        for stmt in statements(context, id) {
+        for stmt in context.flow.statements_of(id) {
             if let Class::Call(callee) = context.flow.class(id, stmt) {
                 open.push(callee);
             }
@@ -105,10 +95,8 @@ fn running(context: &Context<'_>, entry: RoutineId) -> BTreeSet<RoutineId> {
 
 /// Whether something outside of the files is called: it may call any routine.
 fn calls_others(context: &Context<'_>) -> bool {
-    let mut graphs = context.flow.graphs();
-    graphs.any(|(id, ..)| {
-        statements(context, id).into_iter().any(|stmt| context.flow.is_loose(id, stmt))
-    })
+    let mut statements = context.flow.statements();
+    statements.any(|(place, stmt, _)| context.flow.loses_position(place.0, stmt))
 }
 
 /// Whether an operator can start a procedure, and has a reason to.
@@ -116,15 +104,9 @@ fn is_for_operators(context: &Context<'_>, id: RoutineId) -> bool {
     if context.program.routine(id).params.iter().any(|param| !param.optional) {
         return false;
     }
-    let asks = statements(context, id).into_iter().any(|stmt| match &stmt.kind {
-        StmtKind::Call(call) => match &call.callee {
-            Callee::Name(name) => {
-                builtins::instruction(&name.key).is_some_and(Instruction::asks_operator)
-            }
-            Callee::Late(_) => false,
-        },
-        _ => false,
-    });
+    let mut statements = context.flow.statements_of(id);
+    let asks =
+        statements.any(|stmt| called_instruction(stmt).is_some_and(Instruction::asks_operator));
     let mut own = context.sites.iter().filter(|site| site.place.0 == id);
     asks || own.all(|site| site.signature.form == MoveForm::AbsJ)
 }

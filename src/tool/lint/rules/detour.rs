@@ -41,12 +41,12 @@ use crate::rapid::text::Span;
 rule!("EW403", "detour", Path, Text, Info, "detour.rs");
 
 /// Points of a loop.
-const MOST_POINTS: usize = 6;
+const MAX_POINTS: usize = 6;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     for first in 0..context.sites.len() {
         let mut chain = vec![first];
-        while chain.len() <= MOST_POINTS + 1 {
+        while chain.len() <= MAX_POINTS + 1 {
             let Some(next) = only_next(context, chain[chain.len() - 1]) else { break };
             let site = &context.sites[next];
             if site.is_linear() || !site.is_plain() || chain.contains(&next) {
@@ -54,9 +54,9 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             }
             if same_goal(context, first, next) {
                 // A program that does nothing but move has its movements for a purpose.
-                let works = context.works(&[chain.as_slice(), &[next]].concat());
-                if chain.len() > 2 && chain.len() + 1 < context.sites.len() && works {
-                    findings.extend(told(context, &chain, next));
+                let process = context.has_process(&[chain.as_slice(), &[next]].concat());
+                if chain.len() > 2 && chain.len() + 1 < context.sites.len() && process {
+                    findings.extend(needless_loop(context, &chain, next));
                 }
                 break;
             }
@@ -65,18 +65,18 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     }
 }
 
-fn told(context: &Context<'_>, chain: &[usize], last: usize) -> Option<Finding> {
+fn needless_loop(context: &Context<'_>, chain: &[usize], last: usize) -> Option<Finding> {
     let spans: Vec<Span> = chain.iter().map(|site| context.sites[*site].stmt.span).collect();
-    let saving = context.weigh(&spans, &|_| Vec::new()).saving().ok()?;
+    let saving = context.evaluate(&spans, &|_| Vec::new()).ok()?;
     // A way over unknown points cannot be judged.
     if chain.iter().any(|site| context.sites[*site].facts.goal.is_none()) {
         return None;
     }
     let points = chain.len() - 1;
     let message = format!("a loop over {points} points leads back to where it began, for nothing");
-    let mut finding = Finding::new(&RULE, context.sites[last].stmt.span, message);
-    finding.related.push((spans[0], "it begins here".to_owned()));
-    finding.change = format!("leaving out the {} movements before this one", chain.len());
-    finding.saving = saving;
+    let change = format!("leaving out the {} movements before this one", chain.len());
+    let finding = Finding::new(&RULE, context.sites[last].stmt.span, message)
+        .with_related(spans[0], "it begins here")
+        .with_saving(change, saving);
     Some(finding)
 }

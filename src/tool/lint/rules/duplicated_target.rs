@@ -31,6 +31,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::context::Context;
 use super::super::rule::Finding;
+use super::super::site::parts;
 use crate::rapid::ir::exec::value_of;
 use crate::rapid::ir::hir::{DataKind, ExprKind};
 use crate::rapid::ir::program::{DataId, Symbol};
@@ -42,7 +43,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     let mut used: BTreeSet<DataId> = BTreeSet::new();
     for site in &context.sites {
         if let ExprKind::Ref(name) = &site.target.kind
-            && !context.quiet.is_local(site.place.0, &name.key)
+            && !context.flow.data_names.is_local(site.place.0, &name.key)
             && let Some(Symbol::Data(id)) = context.program.resolve(site.place.0.module, &name.key)
             && context.program.data(id).kind == DataKind::Const
             && context.program.data(id).dims.is_empty()
@@ -54,31 +55,25 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     for id in used {
         let data = context.program.data(id);
         let value = value_of(context.program, id).datum;
-        if data.type_name.key != "robtarget" || is_placeholder(&value) {
-            continue;
-        }
-        if value.first_unknown().is_some() {
+        if data.type_name.key != "robtarget"
+            || is_placeholder(&value)
+            || value.first_unknown().is_some()
+        {
             continue;
         }
         // Values are compared as they are written out.
-        match known.entry((id.module, format!("{value:?}"))) {
-            std::collections::btree_map::Entry::Vacant(place) => {
-                place.insert(id);
-            }
-            std::collections::btree_map::Entry::Occupied(first) => {
-                let first = context.program.data(*first.get());
-                let message =
-                    format!("{} is the same target as {}", data.name.text, first.name.text);
-                let mut finding = Finding::new(&RULE, data.name.span, message);
-                finding.related.push((first.name.span, "the same value".to_owned()));
-                findings.push(finding);
-            }
+        let first = *known.entry((id.module, format!("{value:?}"))).or_insert(id);
+        if first != id {
+            let first = context.program.data(first);
+            let message = format!("{} is the same target as {}", data.name.text, first.name.text);
+            let finding = Finding::new(&RULE, data.name.span, message)
+                .with_related(first.name.span, "the same value");
+            findings.push(finding);
         }
     }
 }
 
 fn is_placeholder(value: &Datum) -> bool {
-    let Datum::List(parts) = value else { return true };
-    let Some(Datum::List(place)) = parts.first() else { return true };
-    place.iter().all(|x| x.num() == Some(0.0))
+    let place = parts(value).and_then(|parts| self::parts(parts.first()?));
+    place.is_none_or(|place| place.iter().all(|x| x.num() == Some(0.0)))
 }

@@ -34,7 +34,6 @@
 
 use super::super::context::Context;
 use super::super::rule::Finding;
-use super::super::saving::Weighed;
 use super::super::trace::{Action, executions};
 use crate::arm::dynamics::Load;
 use crate::arm::kinematics::limits_ok;
@@ -49,9 +48,9 @@ use crate::retime::path::joint_path::Joints;
 rule!("EW301", "dwell-at-heavy-pose", Dwell, Robot, Info, "dwell_at_heavy_pose.rs");
 
 /// Shortest wait, s.
-const LONG: f64 = 3.0;
+const MIN_WAIT: f64 = 3.0;
 /// Least share of the holding power that another pose spares.
-const SPARED: f64 = 0.2;
+const MIN_SHARE: f64 = 0.2;
 /// Axes that are turned (2, 3, 5), and how far, rad.
 const AXES: [usize; 3] = [1, 2, 4];
 const TURNS: [f64; 5] = [-0.35, -0.175, 0.0, 0.175, 0.35];
@@ -71,16 +70,13 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         };
         let times = executions[&wait.span].len();
         let What::Wait(record) = &cycle.simulation.events[event].what else { continue };
-        if done.duration < LONG || times != 1 || !record.position_known {
+        if done.duration < MIN_WAIT || times != 1 || !record.position_known {
             continue;
         }
         let here: f64 = holding_w(model, &record.load, &record.q).iter().sum();
         let (pose, there) = lightest(model, &record.load, &record.q);
-        let before = context.trace[..step].iter().rev().find_map(|done| match &done.what {
-            Action::Move(movement) => Some(*movement),
-            _ => None,
-        });
-        let Some(template) = before.filter(|_| there < (1.0 - SPARED) * here) else { continue };
+        let before = context.trace[..step].iter().rev().find_map(|done| done.what.movement());
+        let Some(template) = before.filter(|_| there < (1.0 - MIN_SHARE) * here) else { continue };
         let way = |shorter: f64| {
             let q = record.q;
             move |step: &Step| match step {
@@ -101,22 +97,22 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         if way_s >= done.duration {
             continue;
         }
-        let Weighed::Saves(saving) = context.weigh(&[wait.span], &way(way_s)) else { continue };
+        let Ok(Some(saving)) = context.evaluate(&[wait.span], &way(way_s)) else { continue };
         let message = format!(
             "the robot waits {:.1} s in a pose that takes {here:.0} W to hold; one nearby takes \
              {there:.0} W",
             done.duration
         );
-        let mut finding = Finding::new(&RULE, wait.span, message);
-        finding.change = format!(
+        let change = format!(
             "MoveAbsJ {},v1000,fine before the wait, {:.3} s less of it, and MoveAbsJ {},v1000,fine \
              behind it",
             jointtarget(&pose),
             way_s,
             jointtarget(&record.q)
         );
-        finding.saving = Some(saving);
-        finding.assumptions.push("there is room for the way to the other pose".to_owned());
+        let finding = Finding::new(&RULE, wait.span, message)
+            .with_saving(change, saving)
+            .with_assumption("there is room for the way to the other pose");
         findings.push(finding);
     }
 }

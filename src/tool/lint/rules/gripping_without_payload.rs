@@ -48,19 +48,20 @@ use super::super::context::Context;
 use super::super::rule::Finding;
 use super::super::trace::{Action, TraceStep};
 use crate::rapid::builtins::MoveForm;
+use crate::rapid::ir::movement::Movement;
 
 rule!("EW502", "gripping-without-payload", Load, Text, Info, "gripping_without_payload.rs");
 
 /// The tool comes out the way it went in where its direction changes by more, rad.
-const OUT: f64 = 1.65;
+const MIN_TURN_OUT: f64 = 1.65;
 /// It goes on along a path where its direction changes by less, rad.
-const ON: f64 = 0.9;
+const MAX_TURN_ON: f64 = 0.9;
 /// A movement with a part is a joint movement or faster than a process, m/s.
-const FAST: f64 = 0.25;
+const MIN_SPEED: f64 = 0.25;
 /// Fewest movements with a part.
-const MOVES: usize = 2;
+const MIN_MOVES: usize = 2;
 /// Most steps with a part.
-const MOST_BETWEEN: usize = 500;
+const MAX_STEPS_BETWEEN: usize = 500;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     if !context.calls("gripload").is_empty()
@@ -70,11 +71,10 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     }
     // The program lacks it as a whole: one remark is enough.
     let resets = resets(context);
-    let carries = resets.into_iter().find(|(step, off)| carries(context, *step, *off));
-    let carries = carries.map(|(step, _)| step);
-    let Some(Action::Output(output)) = carries.map(|step| &context.trace[step].what) else {
+    let Some((step, _)) = resets.into_iter().find(|(on, off)| carries(context, *on, *off)) else {
         return;
     };
+    let Action::Output(output) = &context.trace[step].what else { return };
     let message = format!(
         "{} is set where the tool goes in and out, and reset at another such place: a part is \
          carried, but no GripLoad says what it weighs",
@@ -94,7 +94,7 @@ fn resets(context: &Context<'_>) -> Vec<(usize, usize)> {
             next.insert(key, step);
         } else if output.value == "1"
             && !output.instruction.eq_ignore_ascii_case("pulsedo")
-            && let Some(off) = next.get(&key).filter(|off| **off - step <= MOST_BETWEEN)
+            && let Some(off) = next.get(&key).filter(|off| **off - step <= MAX_STEPS_BETWEEN)
         {
             found.push((step, *off));
         }
@@ -105,20 +105,16 @@ fn resets(context: &Context<'_>) -> Vec<(usize, usize)> {
 
 /// Whether what is set in a step and reset in another one holds a part between them.
 fn carries(context: &Context<'_>, step: usize, off: usize) -> bool {
-    let mut moves = 0;
-    let mut carried = false;
-    for done in &context.trace[step..off] {
-        let Action::Move(movement) = &done.what else { continue };
-        moves += 1;
-        let joint = matches!(movement.form, MoveForm::Joint | MoveForm::AbsJ);
-        carried |= joint || movement.speed.tcp >= FAST;
-    }
-    if moves < MOVES || !carried {
+    let mut moves = context.trace[step..off].iter().filter_map(|done| done.what.movement());
+    let carries = |movement: &Movement| {
+        matches!(movement.form, MoveForm::Joint | MoveForm::AbsJ) || movement.speed.tcp >= MIN_SPEED
+    };
+    if moves.clone().count() < MIN_MOVES || !moves.any(carries) {
         return false;
     }
     let (Some(on), Some(off)) = (end(context, step), end(context, off)) else { return false };
-    let goes_on = |end: &End| end.turn.is_some_and(|turn| turn < ON);
-    let comes_out = |end: &End| end.turn.is_some_and(|turn| turn > OUT);
+    let goes_on = |end: &End| end.turn.is_some_and(|turn| turn < MAX_TURN_ON);
+    let comes_out = |end: &End| end.turn.is_some_and(|turn| turn > MIN_TURN_OUT);
     let ends = [on, off];
     !ends.iter().any(goes_on) && ends.iter().any(comes_out) && ends.iter().any(|end| end.waits)
 }
@@ -133,13 +129,10 @@ struct End {
 
 /// The place at which the robot stands in a step; `None` if it passes.
 fn end(context: &Context<'_>, step: usize) -> Option<End> {
-    let moved = |done: &TraceStep<'_>| matches!(done.what, Action::Move(_) | Action::Left(_));
+    let moved = |done: &TraceStep<'_>| done.what.moves();
     let here = context.trace[..step].iter().rposition(moved)?;
     let out = step + context.trace[step..].iter().position(moved)?;
-    match &context.trace[here].what {
-        Action::Move(movement) if movement.zone.fine => {}
-        _ => return None,
-    }
+    context.trace[here].what.movement().filter(|movement| movement.zone.fine)?;
     let into = context.trace[..here].iter().rposition(moved);
     let pose = |step: usize| Some(context.pose(step)?.translation.vector);
     let turn = || {

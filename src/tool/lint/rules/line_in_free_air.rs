@@ -33,67 +33,49 @@
 //! alone, and so are lines before or behind another line.
 
 use super::super::context::Context;
-use super::super::edits::{fix, replace};
+use super::super::edits::{as_joint, replace};
 use super::super::flow::Through;
-use super::super::rule::{Applicability, Finding};
-use super::super::saving::Weighed;
+use super::super::rule::Finding;
 use crate::rapid::builtins::MoveForm;
-use crate::rapid::ir::movement::Movement;
-use crate::retime::motion::Step;
 
 rule!("EW205", "line-in-free-air", Speed, Robot, Info, "line_in_free_air.rs");
 
 /// Shortest way, m.
-const WAY: f64 = 0.2;
+const MIN_WAY: f64 = 0.2;
 /// Least speed, m/s.
-const SPEED: f64 = 0.5;
+const MIN_SPEED: f64 = 0.5;
 /// Smallest zone that is passed in free air, m.
-const ZONE: f64 = 0.005;
+const MIN_ZONE: f64 = 0.005;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     for (index, site) in context.sites.iter().enumerate() {
         let passes = |site: usize| {
             let site = &context.sites[site];
-            site.is_plain() && site.facts.zone.is_some_and(|zone| !zone.fine && zone.tcp >= ZONE)
+            let zone = site.facts.zone.filter(|zone| !zone.fine && zone.tcp >= MIN_ZONE);
+            site.is_plain() && zone.is_some()
         };
         let is_joint = |site: &usize| !context.sites[*site].is_linear();
-        let fast = site.facts.speed.is_some_and(|speed| speed.tcp >= SPEED);
+        let fast = site.facts.speed.is_some_and(|speed| speed.tcp >= MIN_SPEED);
         let before = context.before(index);
         if site.signature.form != MoveForm::Linear
             || !passes(index)
             || !fast
             || before.is_empty()
-            || context.may_start(index)
+            || context.is_unknown_before(index)
             || !before.iter().all(|before| passes(*before) && is_joint(before))
             || context
-                .next_moves(index, Through::Quiet)
+                .next_moves(index, Through::NoEffect)
                 .is_none_or(|next| !next.iter().all(is_joint))
-            || context.corner(index).is_none_or(|corner| corner.before < WAY)
+            || context.corner(index).is_none_or(|corner| corner.before < MIN_WAY)
         {
             continue;
         }
-        let Weighed::Saves(saving) = context.weigh(&[site.stmt.span], &as_joint) else { continue };
+        let Ok(Some(saving)) = context.evaluate(&[site.stmt.span], &as_joint) else { continue };
         let message = format!("{} keeps a line between two points that are only passed", site.name);
-        let mut finding = Finding::new(&RULE, site.stmt.span, message);
-        finding.change = format!("MoveJ in place of {}", site.name);
-        finding.saving = Some(saving);
-        finding.assumptions.push("the way of a joint movement is free".to_owned());
-        finding.fix = Some(fix(Applicability::Unsafe, replace(site.name_span, "MoveJ")));
+        let finding = Finding::new(&RULE, site.stmt.span, message)
+            .with_saving(format!("MoveJ in place of {}", site.name), saving)
+            .with_assumption("the way of a joint movement is free")
+            .with_unsafe_fix([replace(site.name_span, "MoveJ")]);
         findings.push(finding);
-    }
-}
-
-/// A line as a joint movement.
-pub(super) fn as_joint(step: &Step) -> Vec<Step> {
-    match step {
-        Step::Move(movement) => {
-            let movement = Movement {
-                form: MoveForm::Joint,
-                instruction: "MoveJ".into(),
-                ..(**movement).clone()
-            };
-            vec![Step::Move(Box::new(movement))]
-        }
-        other => vec![other.clone()],
     }
 }

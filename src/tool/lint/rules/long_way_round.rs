@@ -31,13 +31,12 @@
 use std::collections::BTreeSet;
 
 use super::super::context::Context;
-use super::super::edits::{fix, replace};
-use super::super::rule::{Applicability, Finding};
-use super::super::saving::Weighed;
+use super::super::edits::{change_movement, replace};
+use super::super::rule::Finding;
 use super::super::site::Site;
 use super::super::words;
 use crate::rapid::ir::hir::{ArgKind, Expr, ExprKind, Ident};
-use crate::rapid::ir::movement::{Movement, RobTarget, Target};
+use crate::rapid::ir::movement::Target;
 use crate::rapid::ir::program::Symbol;
 use crate::rapid::text::{FileId, Span};
 use crate::retime::motion::Step;
@@ -63,22 +62,21 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             let Some((literal, spans)) = literal(context, site, part) else { continue };
             let quarters = if turned > 0.0 { -WHOLE } else { WHOLE };
             let change = |step: &Step| with_conf(step, part, quarters);
-            let Weighed::Saves(saving) = context.weigh(&spans, &change) else { continue };
+            let Ok(Some(saving)) = context.evaluate(&spans, &change) else { continue };
             let message = format!(
                 "axis {} turns {:.0}° in this {}: the long way round",
                 axis + 1,
                 turned.to_degrees().abs(),
                 site.name
             );
-            let mut finding = Finding::new(&RULE, site.stmt.span, message);
-            finding.related.push((literal.span, "the configuration says so".to_owned()));
             let written = context.text(literal.span);
             let conf = stated + quarters;
-            finding.change = format!("cf{} {conf} in place of {written} in the target", axis + 1);
-            finding.saving = Some(saving);
-            finding.assumptions.push("no hose or cable asks for the long way".to_owned());
-            let edit = replace(literal.span, &conf.to_string());
-            finding.fix = Some(fix(Applicability::Unsafe, edit));
+            let change = format!("cf{} {conf} in place of {written} in the target", axis + 1);
+            let finding = Finding::new(&RULE, site.stmt.span, message)
+                .with_related(literal.span, "the configuration says so")
+                .with_saving(change, saving)
+                .with_assumption("no hose or cable asks for the long way")
+                .with_unsafe_fix([replace(literal.span, &conf.to_string())]);
             findings.push(finding);
         }
     }
@@ -102,18 +100,11 @@ fn farthest(
 
 /// A movement whose target has another component of the configuration.
 fn with_conf(step: &Step, part: usize, quarters: i32) -> Vec<Step> {
-    match step {
-        Step::Move(movement) => {
-            let mut movement = Movement::clone(movement);
-            if let Target::Pose(target) = &movement.target {
-                let mut conf = target.conf;
-                conf[part] += quarters;
-                movement.target = Target::Pose(RobTarget { conf, ..target.clone() });
-            }
-            vec![Step::Move(Box::new(movement))]
+    change_movement(step, |movement| {
+        if let Target::Pose(target) = &mut movement.target {
+            target.conf[part] += quarters;
         }
-        other => vec![other.clone()],
-    }
+    })
 }
 
 /// Where the text states a component of the configuration of a movement's target, and the
@@ -127,7 +118,9 @@ fn literal<'c>(
     let aggregate = if let Some(name) = named(site.target) {
         let symbol = context.program.resolve(site.place.0.module, &name.key)?;
         let Symbol::Data(id) = symbol else { return None };
-        if context.program.is_written(id) || context.quiet.is_local(site.place.0, &name.key) {
+        if context.program.is_written(id)
+            || context.flow.data_names.is_local(site.place.0, &name.key)
+        {
             return None;
         }
         let is_use = |other: &&Site<'c>| named(other.target).is_some_and(|it| it.key == name.key);

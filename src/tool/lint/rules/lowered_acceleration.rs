@@ -32,70 +32,66 @@
 //! No process asks for the softer start.
 
 use super::super::context::Context;
-use super::super::edits::replace;
-use super::super::rule::{Applicability, Finding, Fix};
-use super::super::saving::Weighed;
-use super::super::trace::Action;
-use super::accelerated_to_wait::with_acceleration;
+use super::super::edits::{replace, with_acceleration};
+use super::super::rule::Finding;
 use super::setting_never_restored::percent;
-use crate::rapid::ir::hir::ArgKind;
+use crate::rapid::ir::hir::{ArgKind, Call, Stmt};
+use crate::rapid::ir::movement::Settings;
 use crate::rapid::text::Span;
 
 rule!("EW602", "lowered-acceleration", Settings, Robot, Info, "lowered_acceleration.rs");
 
 /// Least setting of the controller, %.
-const LEAST: f64 = 20.0;
+const MIN_PERCENT: f64 = 20.0;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
-    let calls = context.calls("accset");
-    let values: Vec<Option<f64>> =
-        calls.iter().map(|(place, _, call)| percent(context, place.0, call)).collect();
-    for ((_, stmt, call), value) in calls.iter().zip(&values) {
-        let Some(value) = value.filter(|value| *value < 100.0) else { continue };
-        // Movements are recognised by the value: only this statement may set it.
-        let alone = values.iter().filter(|other| **other == Some(value)).count() == 1;
+    for (stmt, call, value) in lowered(context, "accset") {
         let [acceleration, ramp] = call.args.as_slice() else { continue };
         let (ArgKind::Positional(acceleration), ArgKind::Positional(ramp)) =
             (&acceleration.kind, &ramp.kind)
         else {
             continue;
         };
-        let share = value.max(LEAST) / 100.0;
-        let spans = under(context, |settings| settings.acceleration == share);
+        let share = value.max(MIN_PERCENT) / 100.0;
+        let spans = movements_with(context, |settings| settings.acceleration == share);
         let in_air = |span: &Span| {
-            let site = context.site_of(*span).map(|index| &context.sites[index]);
-            site.is_some_and(|site| !site.is_linear())
+            context.site_of(*span).is_some_and(|index| !context.sites[index].is_linear())
         };
-        if !alone || !spans.iter().any(in_air) {
+        if !spans.iter().any(in_air) {
             continue;
         }
-        let weighed = context.weigh(&spans, &|step| with_acceleration(step, 1.0, Some(1.0)));
-        let Weighed::Saves(saving) = weighed else { continue };
+        let full = context.evaluate(&spans, &|step| with_acceleration(step, 1.0, Some(1.0)));
+        let Ok(Some(saving)) = full else { continue };
         let message = format!("accelerating with {value} % takes longer and spares nothing");
-        let mut finding = Finding::new(&RULE, stmt.span, message);
-        "AccSet 100,100".clone_into(&mut finding.change);
-        finding.saving = Some(saving);
-        finding.assumptions.push("no process asks for the softer start".to_owned());
-        finding.fix = Some(Fix {
-            applicability: Applicability::Unsafe,
-            edits: vec![replace(acceleration.span, "100"), replace(ramp.span, "100")],
-        });
+        let finding = Finding::new(&RULE, stmt.span, message)
+            .with_saving("AccSet 100,100", saving)
+            .with_assumption("no process asks for the softer start")
+            .with_unsafe_fix([acceleration, ramp].map(|argument| replace(argument.span, "100")));
         findings.push(finding);
     }
 }
 
-/// The movement statements all of whose executions are under a setting.
-pub(super) fn under(
-    context: &Context<'_>,
-    is_under: impl Fn(&crate::rapid::ir::movement::Settings) -> bool,
-) -> Vec<Span> {
-    let sites = context.sites.iter().filter(|site| {
-        let mut executions = site.executions.iter();
-        !site.executions.is_empty()
-            && executions.all(|step| match &context.trace[*step].what {
-                Action::Move(movement) => is_under(&movement.settings),
-                _ => false,
-            })
+/// The calls of an instruction that set less than 100 %, with the value. A movement shows only the
+/// value that it runs with, so calls count only if no other one sets the same.
+pub(super) fn lowered<'c>(
+    context: &Context<'c>,
+    instruction: &'static str,
+) -> Vec<(&'c Stmt, &'c Call, f64)> {
+    let calls = context.calls(instruction);
+    let values: Vec<Option<f64>> =
+        calls.iter().map(|(place, _, call)| percent(context, place.0, call)).collect();
+    let lowered = calls.into_iter().zip(&values).filter_map(|((_, stmt, call), value)| {
+        let value = value.filter(|value| *value < 100.0)?;
+        let same = values.iter().filter(|other| **other == Some(value)).count();
+        (same == 1).then_some((stmt, call, value))
     });
-    sites.map(|site| site.stmt.span).collect()
+    lowered.collect()
+}
+
+/// The movement statements all of whose executions have settings of a kind.
+pub(super) fn movements_with(context: &Context<'_>, has: impl Fn(&Settings) -> bool) -> Vec<Span> {
+    let sites = context.sites.iter().enumerate();
+    let sites =
+        sites.filter(|(index, site)| !site.executions.is_empty() && context.always(*index, &has));
+    sites.map(|(_, site)| site.stmt.span).collect()
 }

@@ -35,73 +35,56 @@ use std::collections::BTreeSet;
 
 use super::super::context::Context;
 use super::super::rule::Finding;
-use super::super::saving::Weighed;
 use super::super::trace::Action;
+use super::brakes_never_close::brake_saving;
 use crate::rapid::text::Span;
-use crate::retime::energy::brakes::spared_j;
-use crate::retime::energy::power::holding_w;
-use crate::retime::motion::timeline::What;
 
 rule!("EW302", "micro-move-in-dwell", Dwell, Text, Info, "micro_move_in_dwell.rs");
 
 /// Longest way of a tiny movement, m.
-const WAY: f64 = 0.02;
+const MAX_WAY: f64 = 0.02;
 /// Largest turn of one, rad.
-const TURN: f64 = 0.052;
+const MAX_TURN: f64 = 0.052;
 /// Shortest of the two waits, s.
-const WAIT: f64 = 1.0;
+const MIN_WAIT: f64 = 1.0;
 /// Both together, s.
-const BOTH: f64 = 5.0;
+const MIN_BOTH_WAITS: f64 = 5.0;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
-    let mut told: BTreeSet<Span> = BTreeSet::new();
+    let mut reported: BTreeSet<Span> = BTreeSet::new();
     for step in 1..context.trace.len().saturating_sub(1) {
-        let Action::Move(movement) = &context.trace[step].what else { continue };
+        let Some(movement) = context.trace[step].what.movement() else { continue };
         let wait = |step: usize| match &context.trace[step].what {
-            Action::Wait(..) => Some(context.trace[step].duration).filter(|t| *t >= WAIT),
+            Action::Wait(..) => Some(context.trace[step].duration).filter(|t| *t >= MIN_WAIT),
             _ => None,
         };
         let (Some(before), Some(after)) = (wait(step - 1), wait(step + 1)) else { continue };
+        let total = before + after;
         // All executions of a statement are weighed together.
-        if before + after < BOTH || !is_tiny(context, step) || !told.insert(movement.span) {
+        if total < MIN_BOTH_WAITS || !is_tiny(context, step) || !reported.insert(movement.span) {
             continue;
         }
-        let total = before + after;
-        let spared = spared(context, step + 1, total);
+        let saving = brake_saving(context, step + 1, total)
+            .map(|saving| format!("; closed, they would spare up to {saving:.0} J"));
         let message = format!(
-            "a tiny {} breaks {total:.1} s of waiting in two: the brakes can't close{spared}",
-            movement.instruction
+            "a tiny {} breaks {total:.1} s of waiting in two: the brakes can't close{}",
+            movement.instruction,
+            saving.unwrap_or_default()
         );
-        let mut finding = Finding::new(&RULE, movement.span, message);
-        if let Weighed::Saves(saving) = context.weigh(&[movement.span], &|_| Vec::new()) {
-            "leaving it out".clone_into(&mut finding.change);
-            finding.saving = Some(saving);
-        }
-        findings.push(finding);
+        let finding = Finding::new(&RULE, movement.span, message);
+        findings.push(match context.evaluate(&[movement.span], &|_| Vec::new()) {
+            Ok(Some(saving)) => finding.with_saving("leaving it out", saving),
+            _ => finding,
+        });
     }
 }
 
 fn is_tiny(context: &Context<'_>, step: usize) -> bool {
-    let before =
-        context.trace[..step].iter().rposition(|done| matches!(done.what, Action::Move(_)));
+    let before = context.trace[..step].iter().rposition(|done| done.what.movement().is_some());
     let (Some(before), Some(here)) = (before.and_then(|b| context.pose(b)), context.pose(step))
     else {
         return false;
     };
     let way = (here.translation.vector - before.translation.vector).norm();
-    way < WAY && before.rotation.angle_to(&here.rotation) < TURN
-}
-
-/// What closed brakes would spare, in words.
-fn spared(context: &Context<'_>, step: usize, total: f64) -> String {
-    let known = || {
-        let (event, _) = context.trace[step].event?;
-        let model = context.model.filter(|model| model.has_dynamics())?;
-        let cycle = context.cycle?;
-        let What::Wait(wait) = &cycle.simulation.events[event].what else { return None };
-        let holding: f64 = holding_w(model, &wait.load, &wait.q).iter().sum();
-        let spared = spared_j(model, holding, total);
-        (spared > 0.0).then(|| format!("; closed, they would spare up to {spared:.0} J"))
-    };
-    known().unwrap_or_default()
+    way < MAX_WAY && before.rotation.angle_to(&here.rotation) < MAX_TURN
 }

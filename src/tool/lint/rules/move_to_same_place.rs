@@ -30,9 +30,8 @@
 //! Only what the program does moves the robot.
 
 use super::super::context::Context;
-use super::super::edits::{fix, remove};
-use super::super::rule::{Applicability, Finding};
-use super::super::saving::Weighed;
+use super::super::edits::remove;
+use super::super::rule::Finding;
 use crate::rapid::ir::hir::{Expr, ExprKind};
 use crate::rapid::ir::program::Symbol;
 
@@ -41,7 +40,7 @@ rule!("EW401", "move-to-same-place", Path, Text, Info, "move_to_same_place.rs");
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     for (index, site) in context.sites.iter().enumerate() {
         let before = context.before(index);
-        if before.is_empty() || context.may_start(index) || !before.iter().all(|b| *b != index) {
+        if before.is_empty() || context.is_unknown_before(index) || before.contains(&index) {
             continue;
         }
         if !before.iter().all(|before| same_goal(context, *before, index)) {
@@ -54,15 +53,12 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         let message = format!("{} goes where the robot already is", site.name);
         let mut finding = Finding::new(&RULE, site.stmt.span, message);
         for before in before {
-            let there = context.sites[*before].stmt.span;
-            finding.related.push((there, "it got there here".to_owned()));
+            finding = finding.with_related(context.sites[*before].stmt.span, "it got there here");
         }
-        if let Weighed::Saves(saving) = context.weigh(&[site.stmt.span], &|_| Vec::new()) {
-            "leaving it out".clone_into(&mut finding.change);
-            finding.saving = Some(saving);
+        if let Ok(Some(saving)) = context.evaluate(&[site.stmt.span], &|_| Vec::new()) {
+            finding = finding.with_saving("leaving it out", saving);
         }
-        finding.fix = remove(context, site).map(|edit| fix(Applicability::Unsafe, edit));
-        findings.push(finding);
+        findings.push(finding.with_unsafe_fix(remove(context, site)));
     }
 }
 
@@ -82,17 +78,12 @@ pub(super) fn same_goal(context: &Context<'_>, a: usize, b: usize) -> bool {
 
 /// Whether no name in a target stands for data that the program writes.
 fn is_steady(context: &Context<'_>, module: usize, expr: &Expr) -> bool {
-    let steady = |expr: &Expr| is_steady(context, module, expr);
     match &expr.kind {
         ExprKind::Ref(name) => match context.program.resolve(module, &name.key) {
             Some(Symbol::Data(id)) => !context.program.is_written(id),
             _ => true,
         },
-        ExprKind::Field(base, _) => steady(base),
-        ExprKind::Index(base, indices) => steady(base) && indices.iter().all(steady),
-        ExprKind::Aggregate(items) => items.iter().all(steady),
-        ExprKind::Unary(_, operand) => steady(operand),
-        ExprKind::Binary(_, left, right) => steady(left) && steady(right),
-        _ => true,
+        ExprKind::Call(..) => true,
+        _ => expr.parts().into_iter().all(|part| is_steady(context, module, part)),
     }
 }

@@ -29,23 +29,21 @@
 //! The robot has a spherical wrist. First movements are not judged: where they begin is assumed.
 
 use super::super::context::Context;
+use super::super::edits::as_joint;
 use super::super::rule::Finding;
-use super::super::saving::Weighed;
-use super::super::trace::Action;
-use super::line_in_free_air::as_joint;
 use crate::arm::kinematics::singularity;
 use crate::rapid::builtins::MoveForm;
 
 rule!("EW404", "near-singular-line", Path, Robot, Warning, "near_singular_line.rs");
 
 /// Sine of the angle of axis 5 below which it is near zero: 5°.
-const NEAR: f64 = 0.0872;
+const MAX_SINE: f64 = 0.0872;
 /// Names of the paces that axes set.
 const BY_AXES: [&str; 4] = ["joint-speed", "acceleration", "torque", "estimated"];
 /// Turn of axis 4 or 6 that only a singularity asks for, rad.
-const TURN: f64 = std::f64::consts::FRAC_PI_2;
-/// Looks at a movement.
-const LOOKS: usize = 40;
+const MIN_TURN: f64 = std::f64::consts::FRAC_PI_2;
+/// Intervals between the samples of a movement.
+const INTERVALS: usize = 40;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     for site in &context.sites {
@@ -55,17 +53,15 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         if !line || first || !site.executions.iter().any(|step| is_near(context, *step)) {
             continue;
         }
-        let Weighed::Saves(saving) = context.weigh(&[site.stmt.span], &as_joint) else { continue };
+        let Ok(Some(saving)) = context.evaluate(&[site.stmt.span], &as_joint) else { continue };
         let message = format!("{} passes the singularity of the wrist", site.name);
-        let mut finding = Finding::new(&RULE, site.stmt.span, message);
-        finding.change = format!("MoveJ in place of {}", site.name);
-        finding.saving = Some(saving);
-        findings.push(finding);
+        let change = format!("MoveJ in place of {}", site.name);
+        findings.push(Finding::new(&RULE, site.stmt.span, message).with_saving(change, saving));
     }
 }
 
 fn is_first(context: &Context<'_>, step: usize) -> bool {
-    !context.trace[..step].iter().any(|done| matches!(done.what, Action::Move(_)))
+    context.trace[..step].iter().all(|done| done.what.movement().is_none())
 }
 
 fn is_near(context: &Context<'_>, step: usize) -> bool {
@@ -73,10 +69,10 @@ fn is_near(context: &Context<'_>, step: usize) -> bool {
         return false;
     };
     let wrist = |i: usize| {
-        let t = record.t_start + record.duration * i as f64 / LOOKS as f64;
+        let t = record.t_start + record.duration * i as f64 / INTERVALS as f64;
         singularity(model, &run.at(t).q).map_or(1.0, |singularity| singularity.wrist)
     };
-    let turns = [3, 5].iter().any(|axis| (leg.end[*axis] - leg.start[*axis]).abs() > TURN);
+    let turns = [3, 5].iter().any(|axis| (leg.end[*axis] - leg.start[*axis]).abs() > MIN_TURN);
     let by_axes = BY_AXES.contains(&record.pace.name());
-    by_axes && turns && (0..=LOOKS).map(wrist).fold(1.0, f64::min) < NEAR
+    by_axes && turns && (0..=INTERVALS).map(wrist).fold(1.0, f64::min) < MAX_SINE
 }

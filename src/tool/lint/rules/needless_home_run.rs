@@ -35,43 +35,41 @@
 
 use super::super::context::Context;
 use super::super::rule::Finding;
-use super::super::saving::Weighed;
-use super::super::site::{Site, facts_of};
-use super::super::trace::Action;
+use super::super::saving::Evaluation;
+use super::super::site::{Goal, Site, facts_of};
+use super::super::statements::called_name;
 use crate::rapid::builtins::MoveForm;
 use crate::rapid::ir::graph::Step as GraphStep;
-use crate::rapid::ir::hir::{Callee, Stmt, StmtKind};
+use crate::rapid::ir::hir::{Ident, Stmt, StmtKind};
 use crate::rapid::text::Span;
 use crate::retime::motion::Step;
 
 rule!("EW406", "needless-home-run", Path, Text, Info, "needless_home_run.rs");
 
 /// Least number of visits in a cycle that are reported without a robot.
-const MANY: usize = 2;
+const MIN_VISITS: usize = 2;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
-    let is_move = |step: usize| matches!(context.trace[step].what, Action::Move(_));
+    let is_move = |step: usize| context.trace[step].what.movement().is_some();
     let moves: Vec<usize> = (0..context.trace.len()).filter(|step| is_move(*step)).collect();
     let Some(home) = moves.first().and_then(|step| goal(context, *step)) else { return };
+    let is_home = |step: usize| goal(context, step).is_some_and(|goal| goal.is_same(&home));
     // A program that begins at a pose begins at home if it ends there too.
-    let ends = moves.last().and_then(|step| goal(context, *step));
-    if home.pose().is_some() && ends.is_none_or(|ends| !ends.is_same(&home)) {
+    if home.pose().is_some() && !moves.last().is_some_and(|step| is_home(*step)) {
         return;
     }
     // Nothing is done at home, and the movements before and after it lead elsewhere.
-    let idle = |step: usize| {
-        let away = |step: usize| goal(context, step).is_none_or(|goal| !goal.is_same(&home));
-        let before = context.trace[..step].iter().rposition(|done| moves_or_leaves(&done.what));
-        goal(context, step).is_some_and(|goal| goal.is_same(&home))
-            && before.is_some_and(|before| is_move(before) && away(before))
+    let passes = |step: usize| {
+        let before = context.trace[..step].iter().rposition(|done| done.what.moves());
+        is_home(step)
+            && before.is_some_and(|before| is_move(before) && !is_home(before))
             && step + 1 < context.trace.len()
             && is_move(step + 1)
-            && away(step + 1)
+            && !is_home(step + 1)
     };
     // Without work between two visits home is only a point of a path.
-    let is_home = |step: &usize| goal(context, *step).is_some_and(|goal| goal.is_same(&home));
-    let is_work = |step: &usize| !moves_or_leaves(&context.trace[*step].what);
-    let homes: Vec<usize> = moves.iter().copied().filter(is_home).collect();
+    let homes: Vec<usize> = moves.iter().copied().filter(|step| is_home(*step)).collect();
+    let is_work = |step: &usize| !context.trace[*step].what.moves();
     let at_work: Vec<usize> = (0..context.trace.len()).filter(is_work).collect();
     let works_between = |from: usize, to: usize| {
         let next = at_work.partition_point(|step| *step <= from);
@@ -81,7 +79,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         let visit = homes.partition_point(|home| *home < step);
         let before = visit.checked_sub(1).map_or(0, |before| homes[before]);
         let after = homes.get(visit + 1).copied().unwrap_or(context.trace.len());
-        idle(step) && works_between(before, step) && works_between(step, after)
+        passes(step) && works_between(before, step) && works_between(step, after)
     };
     let visits = moves.iter().filter(|step| idle(**step)).count();
     for site in &context.sites {
@@ -95,62 +93,41 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             continue;
         }
         if site.executions.iter().all(|step| idle(*step)) {
-            let weighed = context.weigh(&[site.stmt.span], &|_| Vec::new());
-            findings.extend(told(site.stmt.span, site.name, weighed, visits));
+            let saving = context.evaluate(&[site.stmt.span], &|_| Vec::new());
+            findings.extend(needless(site.stmt.span, site.name, saving, visits));
         } else if does_nothing_else(context, site) {
-            for call in idle_calls(context, site, &idle) {
-                let weighed = context.weigh(&[site.stmt.span], &|step| without(step, call.name));
-                findings.extend(told(call.stmt.span, call.text, weighed, visits));
+            for (stmt, name) in idle_calls(context, site, &idle) {
+                let saving = context.evaluate(&[site.stmt.span], &|step| without(step, name.span));
+                findings.extend(needless(stmt.span, &name.text, saving, visits));
             }
         }
     }
 }
 
-fn told(span: Span, name: &str, weighed: Weighed, visits: usize) -> Option<Finding> {
-    let saving = match weighed {
-        Weighed::Saves(saving) => Some(saving),
-        Weighed::Unknown if visits >= MANY => None,
-        _ => return None,
-    };
+fn needless(span: Span, name: &str, saving: Evaluation, visits: usize) -> Option<Finding> {
+    let saving = saving.ok().filter(|saving| saving.is_some() || visits >= MIN_VISITS)?;
     let message = format!("{name} goes home on the way to other work, for nothing");
-    let mut finding = Finding::new(&RULE, span, message);
-    "leaving it out".clone_into(&mut finding.change);
-    finding.saving = saving;
-    finding.assumptions.push("the direct way is free".to_owned());
+    let finding = Finding::new(&RULE, span, message)
+        .with_saving("leaving it out", saving)
+        .with_assumption("the direct way is free");
     Some(finding)
 }
 
-/// A call of a routine.
-struct CallSite<'c> {
-    /// The statement.
-    stmt: &'c Stmt,
-    /// The routine's name there.
-    name: Span,
-    text: &'c str,
-}
-
-/// The calls of a movement's routine whose executions are all needless.
+/// The calls of a movement's routine whose executions are all needless, with the name there.
 fn idle_calls<'c>(
     context: &Context<'c>,
     site: &Site<'_>,
     idle: &impl Fn(usize) -> bool,
-) -> Vec<CallSite<'c>> {
-    let called_at = |step: usize| match &context.trace[step].what {
-        Action::Move(movement) => movement.called_at,
-        _ => None,
-    };
-    let mut found = Vec::new();
-    for place in context.flow.callers(site.place.0) {
-        let Some(stmt) = context.flow.statement(*place) else { continue };
-        let StmtKind::Call(call) = &stmt.kind else { continue };
-        let Callee::Name(name) = &call.callee else { continue };
+) -> Vec<(&'c Stmt, &'c Ident)> {
+    let called_at = |step: usize| context.trace[step].what.movement()?.called_at;
+    let calls = context.flow.callers(site.place.0).iter().filter_map(|place| {
+        let stmt = context.flow.statement(*place)?;
+        let name = called_name(stmt)?;
         let mut visits = site.executions.iter().filter(|step| called_at(**step) == Some(name.span));
         let some = visits.clone().next().is_some();
-        if some && visits.all(|step| idle(*step)) {
-            found.push(CallSite { stmt, name: name.span, text: &name.text });
-        }
-    }
-    found
+        (some && visits.all(|step| idle(*step))).then_some((stmt, name))
+    });
+    calls.collect()
 }
 
 /// Whether all that the routine of a movement does is that movement.
@@ -174,13 +151,6 @@ fn without(step: &Step, call: Span) -> Vec<Step> {
     }
 }
 
-fn moves_or_leaves(action: &Action<'_>) -> bool {
-    matches!(action, Action::Move(_) | Action::Left(_))
-}
-
-fn goal(context: &Context<'_>, step: usize) -> Option<super::super::site::Goal> {
-    match &context.trace[step].what {
-        Action::Move(movement) => facts_of(movement).goal,
-        _ => None,
-    }
+fn goal(context: &Context<'_>, step: usize) -> Option<Goal> {
+    facts_of(context.trace[step].what.movement()?).goal
 }

@@ -36,32 +36,26 @@
 
 use super::super::context::Context;
 use super::super::rule::Finding;
-use crate::rapid::ir::hir::ArgKind;
-use crate::rapid::ir::value::Datum;
+use super::super::site::parts;
+use super::super::statements::first_argument;
 
 rule!("EW503", "payload-never-reset", Load, Text, Warning, "payload_never_reset.rs");
 
 /// Loads up to this are none, kg.
-const NONE: f64 = 0.01;
+const MAX_EMPTY: f64 = 0.01;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     if context.entry.is_none() || context.flow.has_late_calls() {
         return;
     }
     let calls = context.calls("gripload");
-    let masses: Option<Vec<f64>> = calls
-        .iter()
-        .map(|(place, _, call)| {
-            let ArgKind::Positional(expr) = &call.args.first()?.kind else { return None };
-            match context.constant(place.0, expr)? {
-                Datum::List(parts) => parts.first()?.num(),
-                _ => None,
-            }
-        })
-        .collect();
+    let masses = calls.iter().map(|(place, _, call)| {
+        let load = context.constant(place.0, first_argument(call)?)?;
+        parts(&load)?.first()?.num()
+    });
     // A load that is not known may be none.
-    let Some(masses) = masses else { return };
-    if masses.is_empty() || masses.iter().any(|mass| *mass <= NONE) {
+    let Some(masses) = masses.collect::<Option<Vec<f64>>>() else { return };
+    if masses.is_empty() || masses.iter().any(|mass| *mass <= MAX_EMPTY) {
         return;
     }
     let message = "a payload is set here, and no GripLoad load0 takes it off again";

@@ -35,42 +35,36 @@
 use super::super::context::Context;
 use super::super::flow::Class;
 use super::super::rule::Finding;
-use crate::rapid::ir::hir::{Block, Callee, Expr, Stmt, StmtKind};
+use super::super::statements::{all_blocks, called_name, routines};
+use crate::rapid::ir::hir::{Block, Expr, Stmt, StmtKind};
 use crate::rapid::ir::program::RoutineId;
 
 rule!("EW303", "polling-wait", Dwell, Text, Info, "polling_wait.rs");
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
-    for (module, body) in context.program.modules.iter().enumerate() {
-        for (index, routine) in body.routines.iter().enumerate() {
-            for block in routine.blocks() {
-                look(context, RoutineId { module, index }, block, findings);
+    for (routine, body) in routines(context.program) {
+        for block in all_blocks(body) {
+            for (index, stmt) in block.iter().enumerate() {
+                let before = index.checked_sub(1).map(|before| &block[before]);
+                let Some((condition, body)) = polling_loop(stmt, before) else { continue };
+                if !context.flow.data_names.has_only_data(routine, condition)
+                    && only_waits(context, routine, body)
+                {
+                    let message = "a loop polls with WaitTime: WaitDI or WaitUntil wait for the \
+                                   input itself";
+                    findings.push(Finding::new(&RULE, stmt.span, message));
+                }
             }
         }
     }
 }
 
-/// The depth of the recursion is limited by the parser.
-fn look(context: &Context<'_>, routine: RoutineId, block: &Block, findings: &mut Vec<Finding>) {
-    for (index, stmt) in block.iter().enumerate() {
-        let polled = match &stmt.kind {
-            StmtKind::While { condition, body } => Some((condition, body.as_slice())),
-            StmtKind::If { branches, otherwise: None } => {
-                jump_back(branches, index.checked_sub(1).map(|before| &block[before]))
-            }
-            _ => None,
-        };
-        if let Some((condition, body)) = polled
-            && !context.quiet.expression(routine, condition)
-            && only_waits(context, routine, body)
-        {
-            let message =
-                "a loop polls with WaitTime: WaitDI or WaitUntil wait for the input itself";
-            findings.push(Finding::new(&RULE, stmt.span, message));
-        }
-        for inner in stmt.kind.blocks() {
-            look(context, routine, inner, findings);
-        }
+/// The condition and the statements of a loop, also of one that is made with a jump.
+fn polling_loop<'h>(stmt: &'h Stmt, before: Option<&'h Stmt>) -> Option<(&'h Expr, &'h [Stmt])> {
+    match &stmt.kind {
+        StmtKind::While { condition, body } => Some((condition, body.as_slice())),
+        StmtKind::If { branches, otherwise: None } => jump_back(branches, before),
+        _ => None,
     }
 }
 
@@ -91,23 +85,11 @@ fn jump_back<'h>(
 }
 
 fn only_waits(context: &Context<'_>, routine: RoutineId, body: &[Stmt]) -> bool {
-    let mut waits = false;
-    for stmt in body {
-        let is_wait = match &stmt.kind {
-            StmtKind::Call(call) => match &call.callee {
-                Callee::Name(name) => name.key == "waittime",
-                Callee::Late(_) => false,
-            },
-            _ => false,
-        };
-        if !is_wait && context.flow.class(routine, stmt) != Class::Quiet {
-            return false;
-        }
-        // A counter or a jump may end the loop.
-        if !is_wait && !matches!(stmt.kind, StmtKind::Call(_)) {
-            return false;
-        }
-        waits |= is_wait;
-    }
-    waits
+    let is_wait = |stmt: &Stmt| called_name(stmt).is_some_and(|name| name.key == "waittime");
+    // A counter or a jump may end the loop.
+    let no_effect = |stmt: &Stmt| {
+        matches!(stmt.kind, StmtKind::Call(_))
+            && context.flow.class(routine, stmt) == Class::NoEffect
+    };
+    body.iter().any(is_wait) && body.iter().all(|stmt| is_wait(stmt) || no_effect(stmt))
 }

@@ -32,27 +32,25 @@
 //! The input comes when `--input` or the configuration says.
 
 use super::super::context::Context;
-use super::super::edits::{replace, slower};
+use super::super::edits::{replace, slower, with_speed};
 use super::super::flow::{Next, Through};
-use super::super::rule::{Applicability, Finding, Fix};
-use super::super::saving::Weighed;
+use super::super::rule::Finding;
+use super::super::saving::Saving;
 use super::super::site::Site;
+use super::super::statements::called_instruction;
 use super::super::trace::Action;
-use crate::rapid::builtins::{self, Instruction};
-use crate::rapid::ir::hir::{Callee, StmtKind};
-use crate::rapid::ir::movement::{Movement, Speed};
+use crate::rapid::builtins::Instruction;
 use crate::rapid::text::Span;
-use crate::retime::motion::Step;
 use crate::retime::motion::timeline::WaitBasis;
 
 rule!("EW201", "racing-to-wait", Speed, Text, Warning, "racing_to_wait.rs");
 
 /// Speeds from here on are those of a robot that hurries, m/s.
-const HURRY: f64 = 5.0;
+const MIN_SPEED: f64 = 5.0;
 /// Shortest wait that is worth a change, s.
-const SHORTEST: f64 = 0.1;
+const MIN_WAIT: f64 = 0.1;
 /// Rounding of a time, s.
-const LATE: f64 = 1e-6;
+const ROUNDING: f64 = 1e-6;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     for (index, site) in context.sites.iter().enumerate() {
@@ -74,7 +72,7 @@ pub(super) fn waits_behind(context: &Context<'_>, index: usize) -> Option<(Strin
     for step in &context.sites[index].executions {
         let done = context.trace.get(step + 1)?;
         let Action::Wait(wait, WaitBasis::Input) = &done.what else { return None };
-        if done.duration < SHORTEST {
+        if done.duration < MIN_WAIT {
             return None;
         }
         let slack = found.map_or(done.duration, |(_, slack)| slack.min(done.duration));
@@ -113,71 +111,47 @@ pub(super) fn slower_run(
     let spans: Vec<Span> = sites.iter().map(|site| site.stmt.span).collect();
     let fastest = sites.iter().map(|site| site.facts.speed.map(|speed| speed.tcp));
     let fastest = fastest.collect::<Option<Vec<f64>>>()?.into_iter().fold(0.0, f64::max);
-    let mut best: Option<(String, f64, Weighed, f64)> = None;
+    let times = context.sites[index].executions.len() as f64;
+    let mut best: Option<(String, f64, Saving)> = None;
     for (name, speed) in slower(fastest) {
-        let times = context.sites[index].executions.len() as f64;
-        let change = |step: &Step| with_speed(step, speed);
-        let difference = context.difference(&spans, &change)?;
+        let difference = context.difference(&spans, &|step| with_speed(step, speed))?;
         if difference.longer_s > slack * times {
             break;
         }
-        let weighed = difference.weighed();
-        let Weighed::Saves(saving) = weighed else { continue };
-        if saving.time_s < -LATE {
-            continue;
-        }
-        if best.as_ref().is_none_or(|(_, _, _, most)| saving.energy_j > *most) {
-            best = Some((name, speed, weighed, saving.energy_j));
+        let Ok(saving) = difference.saving() else { continue };
+        let most = best.as_ref().map_or(f64::NEG_INFINITY, |(.., best)| best.energy_j);
+        if saving.time_s >= -ROUNDING && saving.energy_j > most {
+            best = Some((name, speed, saving));
         }
     }
-    let (name, speed, weighed, _) = best?;
-    let site = &context.sites[index];
-    let message = format!("the robot hurries to wait for {signal}");
-    let mut finding = Finding::new(&RULE, site.stmt.span, message);
+    let (name, speed, saving) = best?;
     let faster = |site: &&&Site<'_>| site.facts.speed.is_some_and(|s| s.tcp > speed);
     let lines: Vec<String> =
         sites.iter().filter(faster).map(|site| context.line(site.stmt.span).to_string()).collect();
     let plural = if lines.len() == 1 { "" } else { "s" };
-    finding.change = format!("{name} in line{plural} {}", lines.join(", "));
-    finding.saving = weighed.saving().ok()?;
-    finding.assumptions.push(format!("{signal} comes when --input says"));
-    let edits = sites.iter().filter(faster).map(|site| replace(site.speed.span, &name)).collect();
-    finding.fix = Some(Fix { applicability: Applicability::Unsafe, edits });
+    let edits = sites.iter().filter(faster).map(|site| replace(site.speed.span, &name));
+    let message = format!("the robot hurries to wait for {signal}");
+    let finding = Finding::new(&RULE, context.sites[index].stmt.span, message)
+        .with_saving(format!("{name} in line{plural} {}", lines.join(", ")), saving)
+        .with_assumption(format!("{signal} comes when --input says"))
+        .with_unsafe_fix(edits);
     Some(finding)
-}
-
-/// A movement that is at most so fast, m/s.
-pub(super) fn with_speed(step: &Step, most: f64) -> Vec<Step> {
-    match step {
-        Step::Move(movement) if movement.speed.tcp > most => {
-            let speed = Speed { tcp: most, ..movement.speed };
-            vec![Step::Move(Box::new(Movement { speed, ..(**movement).clone() }))]
-        }
-        other => vec![other.clone()],
-    }
 }
 
 /// A movement at the largest speed right before a wait of unknown length for an input.
 fn hurries(context: &Context<'_>, index: usize) -> Option<Finding> {
     let site = &context.sites[index];
-    site.facts.speed.filter(|speed| speed.tcp >= HURRY)?;
+    site.facts.speed.filter(|speed| speed.tcp >= MIN_SPEED)?;
     let known = site.executions.iter().any(|step| {
-        context.trace.get(step + 1).is_some_and(|done| match &done.what {
-            Action::Wait(_, basis) => *basis != WaitBasis::Unknown,
-            _ => false,
-        })
+        let next = context.trace.get(step + 1).map(|done| &done.what);
+        matches!(next, Some(Action::Wait(_, basis)) if *basis != WaitBasis::Unknown)
     });
-    let next = context.next(index, Through::Quiet);
+    let next = context.next(index, Through::NoEffect);
     let waits = next.iter().all(|next| match next {
-        Next::Wait(place) => context.flow.statement(*place).is_some_and(|stmt| match &stmt.kind {
-            StmtKind::Call(call) => match &call.callee {
-                Callee::Name(name) => {
-                    builtins::instruction(&name.key).is_some_and(Instruction::waits_for_input)
-                }
-                Callee::Late(_) => false,
-            },
-            _ => false,
-        }),
+        Next::Wait(place) => {
+            let instruction = context.flow.statement(*place).and_then(called_instruction);
+            instruction.is_some_and(Instruction::waits_for_input)
+        }
         _ => false,
     });
     if known || !waits || next.is_empty() {

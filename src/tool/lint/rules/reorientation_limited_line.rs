@@ -29,76 +29,64 @@
 //! The rate of turning is that of the speed data.
 
 use super::super::context::Context;
+use super::super::edits::change_movement;
 use super::super::rule::Finding;
-use super::super::saving::Weighed;
 use crate::rapid::builtins::MoveForm;
-use crate::rapid::ir::movement::{Movement, Speed};
 use crate::retime::motion::Step;
 
 rule!("EW204", "reorientation-limited-line", Speed, Text, Info, "reorientation_limited_line.rs");
 
 /// Turning speed of the predefined speeds, rad/s: 500 °/s.
-const USUAL: f64 = 8.726_646;
+const PREDEFINED: f64 = 8.726_646;
 /// Times that turning takes longer than the way.
-const LONGER: f64 = 2.0;
-/// Smallest turn that is told, rad.
-const TURN: f64 = 0.5;
-/// Least time of turning that is told, s.
-const TIME: f64 = 0.15;
+const MIN_RATIO: f64 = 2.0;
+/// Smallest turn that is reported, rad.
+const MIN_TURN: f64 = 0.5;
+/// Least time of turning that is reported, s.
+const MIN_TIME: f64 = 0.15;
 /// Shortest way of what is still a line and no turn on the spot, m.
-const WAY: f64 = 0.01;
+const MIN_WAY: f64 = 0.01;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     for (index, site) in context.sites.iter().enumerate() {
-        let (Some(speed), Some(goal)) = (site.facts.speed, site.facts.goal.as_ref()) else {
-            continue;
-        };
+        let goal = site.facts.goal.as_ref().and_then(|goal| goal.pose());
+        let (Some(speed), Some(to)) = (site.facts.speed, goal) else { continue };
         let before = context.before(index);
         let line = site.signature.form == MoveForm::Linear;
-        if !line || !site.is_plain() || before.is_empty() || context.may_start(index) {
+        if !line || !site.is_plain() || before.is_empty() || context.is_unknown_before(index) {
             continue;
         }
         let limited = before.iter().all(|before| {
             let before = &context.sites[*before];
             let same = before.wobj_key() == site.wobj_key() && before.tool_key() == site.tool_key();
             let from = before.facts.goal.as_ref().and_then(|goal| goal.pose());
-            let (Some(from), Some(to), true) = (from, goal.pose(), same) else { return false };
+            let Some(from) = from.filter(|_| same) else { return false };
             let way = (to.translation.vector - from.translation.vector).norm();
             let turn = from.rotation.angle_to(&to.rotation);
             let turning = turn / speed.orientation;
-            way > WAY && turn > TURN && turning > TIME && turning > LONGER * way / speed.tcp
+            way > MIN_WAY
+                && turn > MIN_TURN
+                && turning > MIN_TIME
+                && turning > MIN_RATIO * way / speed.tcp
         });
         if !limited {
             continue;
         }
-        let slow = speed.orientation < USUAL - 1e-3;
-        let weighed =
-            if slow { context.weigh(&[site.stmt.span], &turning_fast) } else { Weighed::Unknown };
-        let Ok(saving) = weighed.saving() else { continue };
+        let faster = |step: &Step| change_movement(step, |it| it.speed.orientation = PREDEFINED);
+        let slow = speed.orientation < PREDEFINED - 1e-3;
+        let evaluation = if slow { context.evaluate(&[site.stmt.span], &faster) } else { Ok(None) };
+        let Ok(saving) = evaluation else { continue };
         let message = format!(
             "the turn of the tool sets the pace of this {}: its {:.0} mm/s are not reached",
             site.name,
             speed.tcp * 1e3
         );
-        let mut finding = Finding::new(&RULE, site.stmt.span, message);
-        finding.change = format!(
+        let change = format!(
             "[{},500,5000,1000] in place of {}, which turns with {:.0} °/s,",
             (speed.tcp * 1e6).round() / 1e3,
             context.text(site.speed.span),
             speed.orientation.to_degrees()
         );
-        finding.saving = saving;
-        findings.push(finding);
-    }
-}
-
-/// A movement that turns with the usual speed.
-fn turning_fast(step: &Step) -> Vec<Step> {
-    match step {
-        Step::Move(movement) => {
-            let speed = Speed { orientation: USUAL, ..movement.speed };
-            vec![Step::Move(Box::new(Movement { speed, ..(**movement).clone() }))]
-        }
-        other => vec![other.clone()],
+        findings.push(Finding::new(&RULE, site.stmt.span, message).with_saving(change, saving));
     }
 }

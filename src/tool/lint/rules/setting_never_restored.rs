@@ -35,8 +35,8 @@
 
 use super::super::context::Context;
 use super::super::rule::Finding;
-use super::super::trace::Action;
-use crate::rapid::ir::hir::{ArgKind, Call};
+use super::super::statements::first_argument;
+use crate::rapid::ir::hir::Call;
 use crate::rapid::ir::movement::{Movement, Settings};
 use crate::rapid::ir::program::RoutineId;
 
@@ -44,23 +44,16 @@ rule!("EW601", "setting-never-restored", Settings, Text, Warning, "setting_never
 
 /// What a setting is, 1 = 100 %.
 type Share = fn(&Settings) -> f64;
-
 /// Instructions with what they change.
-const LOWERED: [(&str, Share); 2] =
+const SETTINGS: [(&str, Share); 2] =
     [("accset", |settings| settings.acceleration), ("velset", |settings| settings.speed_override)];
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
-    let moves: Vec<&Movement> = context
-        .trace
-        .iter()
-        .filter_map(|done| match &done.what {
-            Action::Move(movement) => Some(*movement),
-            _ => None,
-        })
-        .collect();
-    let (Some(first), Some(last)) = (moves.first(), moves.last()) else { return };
-    for (key, of) in LOWERED {
-        if of(&first.settings) < 1.0 || of(&last.settings) >= 1.0 {
+    let moves = || context.trace.iter().filter_map(|step| step.what.movement());
+    let (Some(first), Some(last)) = (moves().next(), moves().next_back()) else { return };
+    for (key, share) in SETTINGS {
+        let share = |movement: &Movement| share(&movement.settings);
+        if share(first) < 1.0 || share(last) >= 1.0 {
             continue;
         }
         let calls = context.calls(key);
@@ -80,6 +73,5 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
 
 /// The first argument of a call, if it is known.
 pub(super) fn percent(context: &Context<'_>, routine: RoutineId, call: &Call) -> Option<f64> {
-    let ArgKind::Positional(expr) = &call.args.first()?.kind else { return None };
-    context.constant(routine, expr)?.num()
+    context.constant(routine, first_argument(call)?)?.num()
 }

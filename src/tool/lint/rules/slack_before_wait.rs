@@ -43,9 +43,9 @@ use crate::retime::motion::timeline::WaitBasis;
 rule!("EW304", "slack-before-wait", Dwell, Robot, Info, "slack_before_wait.rs");
 
 /// Shortest wait that is worth a change, s.
-const SHORTEST: f64 = 0.5;
+const MIN_WAIT: f64 = 0.5;
 /// Steps between the movement and the wait.
-const MOST_BETWEEN: usize = 8;
+const MAX_STEPS_BETWEEN: usize = 8;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     for (index, site) in context.sites.iter().enumerate() {
@@ -55,21 +55,21 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         let behind = site.executions.iter().map(|step| wait_behind(context, *step));
         let Some(behind) = behind.collect::<Option<Vec<_>>>() else { continue };
         let slack = behind.iter().map(|(_, _, slack)| *slack).fold(f64::INFINITY, f64::min);
-        let (signal, span, _) = behind[0].clone();
-        let Some(mut finding) = slower_run(context, index, &signal, slack) else { continue };
-        finding.rule = &RULE;
-        finding.related.push((span, format!("waits for {signal}")));
-        finding.assumptions.push("no output before the wait starts what it waits for".to_owned());
+        let (signal, span, _) = &behind[0];
+        let Some(finding) = slower_run(context, index, signal, slack) else { continue };
+        let finding = Finding { rule: &RULE, ..finding }
+            .with_related(*span, format!("waits for {signal}"))
+            .with_assumption("no output before the wait starts what it waits for");
         findings.push(finding);
     }
 }
 
 /// The input that is waited for behind some outputs and short waits, where, and how long, s.
 fn wait_behind(context: &Context<'_>, step: usize) -> Option<(String, Span, f64)> {
-    for (count, done) in context.trace[step + 1..].iter().enumerate().take(MOST_BETWEEN) {
+    for (count, done) in context.trace[step + 1..].iter().enumerate().take(MAX_STEPS_BETWEEN) {
         match &done.what {
             Action::Output(_) | Action::Wait(_, WaitBasis::Stated) => {}
-            Action::Wait(wait, WaitBasis::Input) if count > 0 && done.duration >= SHORTEST => {
+            Action::Wait(wait, WaitBasis::Input) if count > 0 && done.duration >= MIN_WAIT => {
                 return Some((wait.signal.as_ref()?.to_string(), wait.span, done.duration));
             }
             _ => return None,

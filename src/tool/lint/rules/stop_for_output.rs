@@ -38,59 +38,49 @@ use super::super::context::Context;
 use super::super::edits::zone_within;
 use super::super::flow::{Next, Through};
 use super::super::rule::Finding;
-use super::super::stops::with_zone;
-use crate::rapid::ir::hir::RoutineKind;
+use super::super::stops::{are_plain, is_ordinary, propose_zone};
 
 rule!("EW104", "stop-for-output", Stops, Text, Info, "stop_for_output.rs");
 
 /// A larger change of direction is a way back, rad.
-const BACK: f64 = 2.0;
-/// Share of the room that a zone may take, and the most, m.
-const PROPOSED: (f64, f64) = (0.3, 0.015);
+const MAX_TURN: f64 = 2.0;
+/// Share of the room that a zone may take.
+const SHARE: f64 = 0.3;
+/// Largest zone that is proposed, m.
+const MAX_ZONE: f64 = 0.015;
 /// How often it has to happen.
-const REPEATED: usize = 2;
+const MIN_EXECUTIONS: usize = 2;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     let stops: Vec<usize> =
         (0..context.sites.len()).filter(|index| stops_for_output(context, *index)).collect();
     let times: usize =
         stops.iter().map(|index| context.sites[*index].executions.len().max(1)).sum();
-    if times < REPEATED {
+    if times < MIN_EXECUTIONS {
         return;
     }
     for index in stops {
-        let site = &context.sites[index];
-        let (Some(corner), Some(argument)) = (context.corner(index), site.zone) else { continue };
-        let room = (PROPOSED.0 * corner.room()).min(PROPOSED.1);
-        let Some(zone) = zone_within(room).filter(|_| corner.turn <= BACK) else { continue };
-        let weighed = context.weigh(&[site.stmt.span], &|step| with_zone(step, zone));
-        let Ok(saving) = weighed.saving() else { continue };
+        let Some(corner) = context.corner(index).filter(|it| it.turn <= MAX_TURN) else { continue };
+        let Some(zone) = zone_within((SHARE * corner.room()).min(MAX_ZONE)) else { continue };
         let message = format!(
             "{} stops only for the output behind it: MoveLDO, MoveJDO or TriggL set it in passing",
-            site.name
+            context.sites[index].name
         );
-        let mut finding = Finding::new(&RULE, site.stmt.span, message);
-        finding.change = format!("{} in place of {}", zone.name, context.text(argument.span));
-        finding.saving = saving;
-        finding.assumptions.push("the process takes the signal while the robot moves".to_owned());
-        findings.push(finding);
+        let finding = propose_zone(context, &RULE, index, zone, message);
+        let assumption = "the process takes the signal while the robot moves";
+        findings.extend(finding.map(|finding| finding.with_assumption(assumption)));
     }
 }
 
 fn stops_for_output(context: &Context<'_>, index: usize) -> bool {
     let site = &context.sites[index];
-    let trap = matches!(context.program.routine(site.place.0).kind, RoutineKind::Trap);
-    if !site.is_stop() || !site.is_plain() || !site.reachable || trap {
+    if !site.is_stop() || !is_ordinary(context, site) {
         return false;
     }
-    let next = context.next(index, Through::Quiet);
-    let outputs = next.iter().all(|next| matches!(next, Next::Output(_)));
-    outputs
-        && !next.is_empty()
-        && context.next_moves(index, Through::Outputs).is_some_and(|next| {
-            next.iter().all(|next| {
-                let next = &context.sites[*next];
-                next.is_plain() && next.tool_key() == site.tool_key()
-            })
-        })
+    let next = context.next(index, Through::NoEffect);
+    !next.is_empty()
+        && next.iter().all(|next| matches!(next, Next::Output(_)))
+        && context
+            .next_moves(index, Through::Outputs)
+            .is_some_and(|next| are_plain(context, site, &next))
 }

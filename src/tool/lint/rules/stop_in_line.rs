@@ -36,29 +36,24 @@
 use super::super::context::Context;
 use super::super::edits::zone_within;
 use super::super::rule::Finding;
-use super::super::stops::{is_in_line, stops_for_movements, with_zone};
+use super::super::stops::{is_in_line, propose_zone, stops_for_movements};
 
 rule!("EW102", "stop-in-line", Stops, Text, Warning, "stop_in_line.rs");
 
 /// Share of the shorter way that a zone may take.
 const SHARE: f64 = 0.3;
 /// Largest zone that is proposed, m.
-const MOST: f64 = 0.075;
+const MAX_ZONE: f64 = 0.075;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     for (index, site) in context.sites.iter().enumerate() {
         let Some(next) = stops_for_movements(context, index) else { continue };
-        let (Some(argument), Some(corner)) = (site.zone, context.corner(index)) else { continue };
+        let Some(corner) = context.corner(index) else { continue };
         if !is_in_line(context, index, &next, &corner) {
             continue;
         }
-        let Some(zone) = zone_within((SHARE * corner.room()).min(MOST)) else { continue };
-        let weighed = context.weigh(&[site.stmt.span], &|step| with_zone(step, zone));
-        let Ok(saving) = weighed.saving() else { continue };
+        let Some(zone) = zone_within((SHARE * corner.room()).min(MAX_ZONE)) else { continue };
         let message = format!("{} stops in the middle of a line", site.name);
-        let mut finding = Finding::new(&RULE, site.stmt.span, message);
-        finding.change = format!("{} in place of {}", zone.name, context.text(argument.span));
-        finding.saving = saving;
-        findings.push(finding);
+        findings.extend(propose_zone(context, &RULE, index, zone, message));
     }
 }

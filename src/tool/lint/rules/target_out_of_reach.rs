@@ -42,7 +42,7 @@ use crate::rapid::text::Span;
 rule!("EW705", "target-out-of-reach", Program, Robot, Warning, "target_out_of_reach.rs");
 
 /// Of so many movements one may be impossible, if the robot is the right one.
-const ONE_IN: usize = 4;
+const MIN_MOVES_PER_FAILURE: usize = 4;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     let (Some(model), Some(entry)) = (context.model, context.entry) else { return };
@@ -55,25 +55,22 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             _ => false,
         };
     }
-    if left.is_empty() || left.len() * ONE_IN > moves.union(&left).count() {
+    if left.is_empty() || left.len() * MIN_MOVES_PER_FAILURE > moves.union(&left).count() {
         return;
     }
     let recording = record(context.program, entry);
     let mut reasons: BTreeMap<Span, Option<String>> = BTreeMap::new();
     for done in recording.trace() {
-        if let Action::Move(movement) = done.what {
-            let reason = reasons.entry(movement.span).or_default();
-            if reason.is_none() {
-                *reason = out_of_reach(model, movement);
-            }
+        let Some(movement) = done.what.movement() else { continue };
+        let reason = reasons.entry(movement.span).or_default();
+        if reason.is_none() {
+            *reason = out_of_reach(model, movement);
         }
     }
     for (span, reason) in reasons {
         let Some(reason) = reason.filter(|_| left.contains(&span)) else { continue };
-        let Some(site) = context.site_of(span).map(|index| &context.sites[index]) else {
-            continue;
-        };
-        let message = format!("{} cannot get where it goes: {reason}", site.name);
+        let Some(index) = context.site_of(span) else { continue };
+        let message = format!("{} cannot get where it goes: {reason}", context.sites[index].name);
         findings.push(Finding::new(&RULE, span, message));
     }
 }

@@ -41,48 +41,48 @@ use crate::rapid::builtins::MoveForm;
 rule!("EW402", "there-and-back", Path, Text, Info, "there_and_back.rs");
 
 /// Slower lines are taken for a process, m/s.
-const FAST: f64 = 0.5;
+const MIN_SPEED: f64 = 0.5;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
-    for first in 0..context.sites.len() {
-        let Some(there) = only_next(context, first) else { continue };
-        let Some(back) = only_next(context, there) else { continue };
-        if back == first || !same_goal(context, first, back) || same_goal(context, first, there) {
-            continue;
-        }
-        let idle = |site: usize| {
-            let site = &context.sites[site];
-            let fast = site.facts.speed.is_some_and(|speed| speed.tcp >= FAST);
-            let arc = site.signature.form == MoveForm::Circular;
-            site.is_plain() && fast && site.reachable && !arc
-        };
-        let again = only_next(context, back).is_some_and(|next| same_goal(context, there, next));
-        let before = context.before(first);
-        let shaken = before.iter().any(|before| same_goal(context, *before, there));
-        // A program that does nothing but move has its movements for a purpose.
-        let works = context.works(&[first, there, back]);
-        if !idle(there) || !idle(back) || again || shaken || !works {
-            continue;
-        }
-        let [a, b, c] = [first, there, back].map(|site| &context.sites[site]);
-        let spans = [a.stmt.span, b.stmt.span];
-        let Ok(saving) = context.weigh(&spans, &|_| Vec::new()).saving() else { continue };
-        if saving.is_some_and(|saving| saving.time_s < 0.0) {
-            continue;
-        }
-        let message = format!("{} goes there and straight back, for nothing", b.name);
-        let mut finding = Finding::new(&RULE, b.stmt.span, message);
-        finding.related.push((a.stmt.span, "from here".to_owned()));
-        finding.related.push((c.stmt.span, "back again".to_owned()));
-        "leaving out this movement and the one before".clone_into(&mut finding.change);
-        finding.saving = saving;
-        findings.push(finding);
+    let found = |first| back_to(context, first);
+    findings.extend((0..context.sites.len()).filter_map(found));
+}
+
+fn back_to(context: &Context<'_>, first: usize) -> Option<Finding> {
+    let there = only_next(context, first)?;
+    let back = only_next(context, there)?;
+    if back == first || !same_goal(context, first, back) || same_goal(context, first, there) {
+        return None;
     }
+    let idle = |site: usize| {
+        let site = &context.sites[site];
+        let fast = site.facts.speed.is_some_and(|speed| speed.tcp >= MIN_SPEED);
+        let arc = site.signature.form == MoveForm::Circular;
+        site.is_plain() && fast && site.reachable && !arc
+    };
+    let again = only_next(context, back).is_some_and(|next| same_goal(context, there, next));
+    let shaken = context.before(first).iter().any(|before| same_goal(context, *before, there));
+    // A program that does nothing but move has its movements for a purpose.
+    let process = context.has_process(&[first, there, back]);
+    if !idle(there) || !idle(back) || again || shaken || !process {
+        return None;
+    }
+    let [a, b, c] = [first, there, back].map(|site| &context.sites[site]);
+    let saving = context.evaluate(&[a.stmt.span, b.stmt.span], &|_| Vec::new()).ok()?;
+    if saving.is_some_and(|saving| saving.time_s < 0.0) {
+        return None;
+    }
+    let message = format!("{} goes there and straight back, for nothing", b.name);
+    let finding = Finding::new(&RULE, b.stmt.span, message)
+        .with_related(a.stmt.span, "from here")
+        .with_related(c.stmt.span, "back again")
+        .with_saving("leaving out this movement and the one before", saving);
+    Some(finding)
 }
 
 /// The only movement that follows a movement, if nothing stands between and no other leads to it.
 pub(super) fn only_next(context: &Context<'_>, site: usize) -> Option<usize> {
-    let next = context.next_moves(site, Through::Quiet)?;
+    let next = context.next_moves(site, Through::NoEffect)?;
     let [next] = next.as_slice() else { return None };
-    (context.before(*next) == [site] && !context.may_start(*next)).then_some(*next)
+    (context.before(*next) == [site] && !context.is_unknown_before(*next)).then_some(*next)
 }

@@ -29,6 +29,7 @@
 
 use super::super::context::Context;
 use super::super::rule::Finding;
+use super::super::site::{numbers, parts};
 use crate::rapid::ir::exec::value_of;
 use crate::rapid::ir::hir::{Data, Expr, ExprKind};
 use crate::rapid::ir::program::{DataId, Symbol};
@@ -37,9 +38,9 @@ use crate::rapid::ir::value::Datum;
 rule!("EW501", "tool-without-mass", Load, Text, Warning, "tool_without_mass.rs");
 
 /// Tools up to this have no mass, kg.
-const NONE: f64 = 0.01;
+const MAX_NO_MASS: f64 = 0.01;
 /// A TCP nearer to the flange than this may be a bare flange, mm.
-const AWAY: f64 = 5.0;
+const MIN_DISTANCE: f64 = 5.0;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     for (module, body) in context.program.modules.iter().enumerate() {
@@ -55,7 +56,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             let Some((held, away, mass)) = measured(&value_of(context.program, id).datum) else {
                 continue;
             };
-            if !held || away < AWAY || mass > NONE {
+            if !held || away < MIN_DISTANCE || mass > MAX_NO_MASS {
                 continue;
             }
             let span = mass_of(data).map_or(data.name.span, |expr| expr.span);
@@ -79,14 +80,10 @@ fn is_used(context: &Context<'_>, id: DataId) -> bool {
 
 /// Whether the robot holds it, the distance of the TCP (mm), and the mass (kg).
 fn measured(tool: &Datum) -> Option<(bool, f64, f64)> {
-    let Datum::List(parts) = tool else { return None };
-    let [Datum::Bool(held), Datum::List(frame), Datum::List(load)] = parts.as_slice() else {
-        return None;
-    };
-    let Some(Datum::List(place)) = frame.first() else { return None };
-    let place = place.iter().map(Datum::num).collect::<Option<Vec<f64>>>()?;
+    let [Datum::Bool(held), frame, load] = parts(tool)? else { return None };
+    let place = numbers(parts(frame)?.first()?)?;
     let away = place.iter().map(|x| x * x).sum::<f64>().sqrt();
-    Some((*held, away, load.first()?.num()?))
+    Some((*held, away, parts(load)?.first()?.num()?))
 }
 
 /// Where the declaration states the mass.

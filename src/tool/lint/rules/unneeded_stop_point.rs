@@ -39,50 +39,39 @@
 use std::collections::BTreeSet;
 
 use super::super::context::{Context, Corner};
-use super::super::edits::{NamedZone, fix, replace, zone_within};
+use super::super::edits::{NamedZone, zone_within};
 use super::super::flow::Through;
-use super::super::rule::{Applicability, Finding};
-use super::super::stops::{is_in_line, stops_for_movements, with_zone};
+use super::super::rule::Finding;
+use super::super::stops::{fix_zone, is_in_line, stops_for_movements};
 use crate::rapid::builtins::MoveForm;
 
 rule!("EW101", "unneeded-stop-point", Stops, Text, Warning, "unneeded_stop_point.rs");
 
 /// Slower movements are taken for a process, m/s.
-const PROCESS: f64 = 0.2;
+const MIN_SPEED: f64 = 0.2;
 /// A larger change of direction is a way back, rad.
-const BACK: f64 = 2.36;
+const MAX_TURN: f64 = 2.36;
 /// Points nearer than this to the next one are left alone, m.
-const NEAR: f64 = 0.02;
+const MIN_ROOM: f64 = 0.02;
 /// Longest way on a contour, m.
-const CONTOUR: f64 = 0.15;
+const MAX_CONTOUR_STEP: f64 = 0.15;
 /// Share of a way across the tool's axis that lies along it.
 const ACROSS: f64 = 0.3;
 /// Lines in a row that are many: with a part the robot goes up, over and down.
-const MANY: usize = 4;
+const MANY_LINES: usize = 4;
 /// Share of the shorter way that a zone may take.
 const SHARE: f64 = 0.3;
 /// Largest zone between two lines, m: their corner is meant to be near.
-const BETWEEN_LINES: f64 = 0.015;
+const MAX_ZONE_BETWEEN_LINES: f64 = 0.015;
 /// Largest zone elsewhere, m.
-const MOST: f64 = 0.075;
+const MAX_ZONE: f64 = 0.075;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
-    for index in 0..context.sites.len() {
+    for (index, site) in context.sites.iter().enumerate() {
         let Some(zone) = could_pass(context, index) else { continue };
-        let site = &context.sites[index];
-        let Some(argument) = site.zone else { continue };
-        let weighed = context.weigh(&[site.stmt.span], &|step| with_zone(step, zone));
-        let Ok(saving) = weighed.saving() else { continue };
-        let mut finding = Finding::new(
-            &RULE,
-            site.stmt.span,
-            format!("{} stops, but nothing behind it needs a robot that stands", site.name),
-        );
-        finding.change = format!("{} in place of {}", zone.name, context.text(argument.span));
-        finding.saving = saving;
-        finding.assumptions.push(format!("there is room to cut the corner ({})", zone.name));
-        finding.fix = Some(fix(Applicability::Unsafe, replace(argument.span, zone.name)));
-        findings.push(finding);
+        let message =
+            format!("{} stops, but nothing behind it needs a robot that stands", site.name);
+        findings.extend(fix_zone(context, &RULE, index, zone, message));
     }
 }
 
@@ -91,11 +80,11 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
 fn could_pass(context: &Context<'_>, index: usize) -> Option<NamedZone> {
     let site = &context.sites[index];
     let next = stops_for_movements(context, index)?;
-    if site.facts.speed.is_none_or(|speed| speed.tcp < PROCESS) {
+    if site.facts.speed.is_none_or(|speed| speed.tcp < MIN_SPEED) {
         return None;
     }
     let corner = context.corner(index)?;
-    if corner.turn > BACK || corner.room() < NEAR {
+    if corner.turn > MAX_TURN || corner.room() < MIN_ROOM {
         return None;
     }
     let line_behind = next.iter().any(|next| context.sites[*next].is_linear());
@@ -103,11 +92,12 @@ fn could_pass(context: &Context<'_>, index: usize) -> Option<NamedZone> {
     if corner.goes_in && line_behind || corner.comes_out && site.is_linear() {
         return None;
     }
-    let lines = site.is_linear() && line_behind;
-    if site.is_linear() && corner.room() < CONTOUR && is_contour(context, index, &next, &corner) {
+    let short = site.is_linear() && corner.room() < MAX_CONTOUR_STEP;
+    if short && is_contour(context, index, &next, &corner) {
         return None;
     }
-    let most = if lines { BETWEEN_LINES } else { MOST };
+    let between_lines = site.is_linear() && line_behind;
+    let most = if between_lines { MAX_ZONE_BETWEEN_LINES } else { MAX_ZONE };
     zone_within((SHARE * corner.room()).min(most))
         .filter(|_| !is_in_line(context, index, &next, &corner))
 }
@@ -122,15 +112,15 @@ fn is_contour(context: &Context<'_>, index: usize, next: &[usize], corner: &Corn
     }
     let mut row = BTreeSet::from([index]);
     let mut open = vec![index];
-    while let Some(site) = open.pop().filter(|_| row.len() < MANY) {
-        let behind = context.next_moves(site, Through::Quiet).unwrap_or_default();
+    while let Some(site) = open.pop().filter(|_| row.len() < MANY_LINES) {
+        let behind = context.next_moves(site, Through::NoEffect).unwrap_or_default();
         let before = context.before(site).iter().copied();
-        let before = before.filter(|it| context.next_moves(*it, Through::Quiet).is_some());
+        let before = before.filter(|it| context.next_moves(*it, Through::NoEffect).is_some());
         for other in behind.into_iter().chain(before) {
             if context.sites[other].is_linear() && row.insert(other) {
                 open.push(other);
             }
         }
     }
-    row.len() >= MANY
+    row.len() >= MANY_LINES
 }

@@ -30,10 +30,9 @@
 //! A cycle may get at most 0.1 s longer.
 
 use super::super::context::Context;
-use super::super::edits::{fix, replace, slower};
-use super::super::rule::{Applicability, Finding};
-use super::super::saving::Weighed;
-use super::racing_to_wait::{waits_behind, with_speed};
+use super::super::edits::{replace, slower, with_speed};
+use super::super::rule::Finding;
+use super::racing_to_wait::waits_behind;
 use crate::arm::dynamics::{Data, Load};
 use crate::arm::robot::Model;
 use crate::retime::energy::account::base;
@@ -45,66 +44,63 @@ use crate::retime::motion::timing::grid::SpeedBound;
 rule!("EW202", "unreached-speed", Speed, Robot, Info, "unreached_speed.rs");
 
 /// Share of the reached speed from which a programmed speed is never reached.
-const BEYOND: f64 = 1.5;
+const MIN_PROGRAMMED_SHARE: f64 = 1.5;
 /// Share of the reached speed that is looked for.
-const BELOW: f64 = 0.9;
+const PROPOSED_SHARE: f64 = 0.9;
 /// Longest time that is given for it, s.
-const LONGER: f64 = 0.1;
+const MAX_DELAY: f64 = 0.1;
 /// Name of the pace that the turning of the tool sets.
 const TURNING: &str = "reorientation";
-/// Looks at a movement.
-const LOOKS: usize = 16;
+/// Samples of a movement.
+const SAMPLES: usize = 16;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
-    for (index, site) in context.sites.iter().enumerate() {
-        let Some(speed) = site.facts.speed else { continue };
-        if !site.is_plain() || waits_behind(context, index).is_some() {
-            continue;
-        }
-        // Where the programmed speed limits the movement, it is reached.
-        let programmed = |step: &usize| {
-            let pace = context.record(*step).map(|(_, record, _)| record.pace);
-            pace == Some(Pace::Speed(SpeedBound::Programmed))
-        };
-        if site.executions.iter().any(programmed) {
-            continue;
-        }
-        let looks = site.executions.iter().map(|step| looks(context, *step));
-        let Some(looks) = looks.collect::<Option<Vec<Looks<'_>>>>() else { continue };
-        let speeds = looks.iter().flat_map(|looks| &looks.states).map(|(_, speed)| *speed);
-        let reached = speeds.fold(0.0, f64::max);
-        // A movement that reorients for longer than it translates is slow for that reason.
-        let turns = |step: &usize| {
-            context.record(*step).is_some_and(|(_, record, _)| record.pace.name() == TURNING)
-        };
-        if reached <= 0.0 || speed.tcp <= BEYOND * reached || site.executions.iter().any(turns) {
-            continue;
-        }
-        let Some((name, below)) = slower(BELOW * reached).next() else { continue };
-        if !context.model.is_some_and(|model| may_save(model, &looks, below)) {
-            continue;
-        }
-        let weighed = context.weigh(&[site.stmt.span], &|step| with_speed(step, below));
-        let Weighed::Saves(saving) = weighed else { continue };
-        if saving.time_s < -LONGER {
-            continue;
-        }
-        let written = context.text(site.speed.span);
-        let message = format!(
-            "{} with {written} gets to {:.0} mm/s and is braked again",
-            site.name,
-            reached * 1e3
-        );
-        let mut finding = Finding::new(&RULE, site.stmt.span, message);
-        finding.change = format!("{name} in place of {written}");
-        finding.saving = Some(saving);
-        finding.fix = Some(fix(Applicability::Unsafe, replace(site.speed.span, &name)));
-        findings.push(finding);
+    let found = |index| slower_speed(context, index);
+    findings.extend((0..context.sites.len()).filter_map(found));
+}
+
+fn slower_speed(context: &Context<'_>, index: usize) -> Option<Finding> {
+    let site = &context.sites[index];
+    let speed = site.facts.speed?;
+    if !site.is_plain() || waits_behind(context, index).is_some() {
+        return None;
     }
+    let mut paces = site.executions.iter().filter_map(|step| Some(context.record(*step)?.1.pace));
+    // Where the programmed speed limits the movement, it is reached.
+    if paces.clone().any(|pace| pace == Pace::Speed(SpeedBound::Programmed)) {
+        return None;
+    }
+    let samples = site.executions.iter().map(|step| samples(context, *step));
+    let samples = samples.collect::<Option<Vec<Samples<'_>>>>()?;
+    let speeds = samples.iter().flat_map(|samples| &samples.states).map(|(_, speed)| *speed);
+    let reached = speeds.fold(0.0, f64::max);
+    // A movement that reorients for longer than it translates is slow for that reason.
+    if reached <= 0.0
+        || speed.tcp <= MIN_PROGRAMMED_SHARE * reached
+        || paces.any(|pace| pace.name() == TURNING)
+    {
+        return None;
+    }
+    let (name, below) = slower(PROPOSED_SHARE * reached).next()?;
+    if !context.model.is_some_and(|model| may_save(model, &samples, below)) {
+        return None;
+    }
+    let evaluation = context.evaluate(&[site.stmt.span], &|step| with_speed(step, below));
+    let saving = evaluation.ok()?.filter(|saving| saving.time_s >= -MAX_DELAY)?;
+    let written = context.text(site.speed.span);
+    let message = format!(
+        "{} with {written} gets to {:.0} mm/s and is braked again",
+        site.name,
+        reached * 1e3
+    );
+    let finding = Finding::new(&RULE, site.stmt.span, message)
+        .with_saving(format!("{name} in place of {written}"), saving)
+        .with_unsafe_fix([replace(site.speed.span, &name)]);
+    Some(finding)
 }
 
 /// Samples of one execution.
-struct Looks<'c> {
+struct Samples<'c> {
     load: &'c Load,
     /// Time that each sample stands for, s.
     each: f64,
@@ -112,25 +108,25 @@ struct Looks<'c> {
     states: Vec<(JointState, f64)>,
 }
 
-fn looks<'c>(context: &Context<'c>, step: usize) -> Option<Looks<'c>> {
+fn samples<'c>(context: &Context<'c>, step: usize) -> Option<Samples<'c>> {
     let (run, record, leg) = context.record(step)?;
     let model = context.model?;
-    let each = record.duration / LOOKS as f64;
-    let look = |i: usize| {
+    let each = record.duration / SAMPLES as f64;
+    let sample = |i: usize| {
         let state = run.at(record.t_start + each * (i as f64 + 0.5));
         let rate = leg.tool.twist(model, &state.q, &state.qd);
         (state, rate.fixed_rows::<3>(0).norm())
     };
-    let states = || (0..LOOKS).map(look).collect();
-    run.problem.is_none().then(|| Looks { load: &run.load, each, states: states() })
+    let states = || (0..SAMPLES).map(sample).collect();
+    run.problem.is_none().then(|| Samples { load: &run.load, each, states: states() })
 }
 
 /// Estimates whether limiting a movement to the speed `below` (m/s) saves more than the longer time
 /// costs. It seldom does, and the estimate is far cheaper than a simulation.
-fn may_save(model: &Model, looks: &[Looks<'_>], below: f64) -> bool {
+fn may_save(model: &Model, samples: &[Samples<'_>], below: f64) -> bool {
     let mut data = Data::new();
     let mut saved = 0.0;
-    for Looks { load, each, states } in looks {
+    for Samples { load, each, states } in samples {
         for (state, speed) in states.iter().filter(|(_, speed)| *speed > below) {
             let share = below / speed;
             let qd = state.qd.map(|rate| rate * share);

@@ -37,24 +37,21 @@ use crate::rapid::text::Span;
 rule!("EW704", "unresolved-movement", Program, Text, Info, "unresolved_movement.rs");
 
 /// End of the reason why a name says nothing.
-const MISSING: &str = "is not declared in the files given";
+const UNDECLARED: &str = "is not declared in the files given";
 /// End of the reason why a place that the robot reads of itself is not known.
-const OWN: &str = "depends on where the robot is";
+const DEPENDS_ON_POSITION: &str = "depends on where the robot is";
 /// Names that may be missing without a whole module being it.
-const FEW: usize = 3;
+const MAX_SEPARATE: usize = 3;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     let left = || context.trace.iter().any(|done| matches!(done.what, Action::Left(_)));
     let Some(entry) = context.entry.filter(|_| left()) else { return };
     // Movements that only this robot cannot make are resolved.
     let recording = record(context.program, entry);
-    let resolved: BTreeSet<Span> = recording
-        .trace()
-        .iter()
-        .filter(|done| matches!(done.what, Action::Move(_)))
-        .map(|done| done.what.span())
-        .collect();
-    let mut told: BTreeSet<&str> = BTreeSet::new();
+    let trace = recording.trace();
+    let resolved = trace.iter().filter_map(|done| done.what.movement());
+    let resolved: BTreeSet<Span> = resolved.map(|movement| movement.span).collect();
+    let mut reported: BTreeSet<&str> = BTreeSet::new();
     let mut missing: Vec<Finding> = Vec::new();
     for done in &context.trace {
         let Action::Left(span) = done.what else { continue };
@@ -66,14 +63,15 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         }
         let Some(note) = context.unresolved.iter().find(|note| note.span == span) else { continue };
         // One remark for one cause.
-        if !note.reason.ends_with(OWN) && told.insert(&note.reason) {
+        if !note.reason.ends_with(DEPENDS_ON_POSITION) && reported.insert(&note.reason) {
             let message = format!("{} can't be worked out: {}", site.name, note.reason);
             let finding = Finding::new(&RULE, span, message);
-            let list = if note.reason.ends_with(MISSING) { &mut missing } else { &mut *findings };
+            let list =
+                if note.reason.ends_with(UNDECLARED) { &mut missing } else { &mut *findings };
             list.push(finding);
         }
     }
-    if missing.len() > FEW {
+    if missing.len() > MAX_SEPARATE {
         // A missing module is one cause, too.
         let others = missing.split_off(1);
         let _ = write!(missing[0].message, " (and {} other names are not)", others.len());

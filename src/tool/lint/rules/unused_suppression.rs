@@ -28,26 +28,19 @@
 //! Codes of rules that need a backup are not judged, and without a robot neither are codes of rules
 //! about movements: with a backup or a robot such a rule may find something.
 
-use super::super::edits::{fix, replace};
+use super::super::context::Context;
+use super::super::edits::replace;
 use super::super::job::Job;
-use super::super::rule::{Applicability, Family, Finding, Needs, Rule};
+use super::super::rule::{Applicability, Family, Finding, Fix, Needs, Rule};
 use super::super::suppress::Suppression;
-use crate::rapid::diagnostics::Severity;
 
-/// A comment takes back a finding that is not there.
-pub(crate) static RULE: Rule = Rule {
-    code: "EW001",
-    name: "unused-suppression",
-    family: Family::Comments,
-    needs: Needs::Text,
-    severity: Severity::Warning,
-    source: include_str!("unused_suppression.rs"),
-    // The engine knows what was suppressed, and asks `judge`.
-    check: |_, _| {},
-};
+rule!("EW001", "unused-suppression", Comments, Text, Warning, "unused_suppression.rs");
+
+/// The engine knows what was suppressed, and asks `report_unused`.
+fn check(_: &Context<'_>, _: &mut Vec<Finding>) {}
 
 /// Adds a finding for the codes of a comment that took nothing back, as far as their rules ran.
-pub(crate) fn judge(
+pub(crate) fn report_unused(
     job: &Job<'_>,
     rules: &[&'static Rule],
     suppression: &Suppression,
@@ -64,23 +57,24 @@ pub(crate) fn judge(
         unused.iter().copied().filter(|code| !meant(code).into_iter().any(|rule| idle(rule)));
     let (vain, unknown): (Vec<&str>, Vec<&str>) = judged.partition(|code| !meant(code).is_empty());
     let whole = vain.len() + unknown.len() == suppression.codes.len();
-    let mut told = Vec::new();
+    let mut texts = Vec::new();
     if suppression.codes.is_empty() {
-        told.push("the comment names no rule: write ! joulepath: ignore CODE reason".to_owned());
+        texts.push("the comment names no rule: write ! joulepath: ignore CODE reason".to_owned());
     }
     if !unknown.is_empty() {
-        told.push(format!("there is no rule {}: joulepath rule lists them", unknown.join(", ")));
+        texts.push(format!("there is no rule {}: joulepath rule lists them", unknown.join(", ")));
     }
     if !vain.is_empty() {
         let so = if whole { "the comment takes nothing back" } else { "leave it out" };
-        told.push(format!("nothing here is found by {}: {so}", vain.join(", ")));
+        texts.push(format!("nothing here is found by {}: {so}", vain.join(", ")));
     }
-    if told.is_empty() {
+    if texts.is_empty() {
         return;
     }
-    let mut finding = Finding::new(&RULE, suppression.span, told.join("; "));
+    let mut finding = Finding::new(&RULE, suppression.span, texts.join("; "));
     if whole {
-        finding.fix = Some(fix(Applicability::Safe, replace(suppression.span, "")));
+        let edits = vec![replace(suppression.span, "")];
+        finding.fix = Some(Fix { applicability: Applicability::Safe, edits });
     }
     findings.push(finding);
 }

@@ -1,12 +1,14 @@
 //! The HTML page of an identification, with its limits of validity.
 
-use serde::Serialize;
+use serde_json::{Value, json};
 use tera::Context;
 
-use super::format::{INTERVAL, fixed};
+use super::format::{INTERVAL, fixed, percent};
 use super::page::{ReportError, render};
 use crate::learn::identify::{Identified, collinear, essential};
-use crate::tool::report::identify::{Basis, LogRecord, undetermined, white};
+use crate::tool::report::identify::{
+    Basis, LogRecord, Parameter, base_parameters, undetermined, white,
+};
 use crate::tool::report::svg::{Curve, Plot, Size};
 
 /// Size of the plots, px.
@@ -27,42 +29,8 @@ pub struct Traces {
     pub power: [Vec<f64>; 2],
 }
 
-#[derive(Serialize)]
-struct JointRow {
-    joint: usize,
-    train: String,
-    held_out: String,
-    free: String,
-    relative: String,
-    memory: String,
-    white: String,
-}
-
-#[derive(Serialize)]
-struct ParameterRow {
-    name: String,
-    value: String,
-    low: String,
-    high: String,
-    essential: bool,
-}
-
-#[derive(Serialize)]
-struct LogRow {
-    path: String,
-    hash: String,
-    rows: usize,
-    left_out: usize,
-}
-
 /// Number of shown digits of a log's hash.
-const SHOWN: usize = 12;
-
-#[derive(Serialize)]
-struct Missing {
-    name: String,
-    why: String,
-}
+const HASH_DIGITS: usize = 12;
 
 /// The page.
 ///
@@ -74,13 +42,6 @@ pub fn identify_report(
     traces: &Traces,
 ) -> Result<String, ReportError> {
     let fit = &found.fit;
-    let missing: Vec<Missing> = undetermined(found)
-        .iter()
-        .map(|entry| {
-            let part = |key: &str| entry[key].as_str().unwrap_or_default().to_owned();
-            Missing { name: part("name"), why: part("why") }
-        })
-        .collect();
     let alike: Vec<String> = collinear(fit)
         .iter()
         .map(|group| {
@@ -101,15 +62,17 @@ pub fn identify_report(
     context.insert("torque", &basis.torque);
     context.insert("joints", &joint_rows(found));
     context.insert("parameters", &parameter_rows(found));
-    context.insert("missing", &missing);
+    context.insert("missing", &undetermined(found));
     context.insert("alike", &alike);
     context.insert("notes", &basis.notes);
     context.insert("quality", &found.quality.sentence());
-    let log = |log: &LogRecord| LogRow {
-        path: log.path.clone(),
-        hash: log.hash.chars().take(SHOWN).collect(),
-        rows: log.rows,
-        left_out: log.left_out,
+    let log = |log: &LogRecord| {
+        json!({
+            "path": log.path,
+            "hash": log.hash.chars().take(HASH_DIGITS).collect::<String>(),
+            "rows": log.rows,
+            "left_out": log.left_out,
+        })
     };
     context.insert("logs", &basis.logs.iter().map(log).collect::<Vec<_>>());
     context.insert("date", &basis.date);
@@ -119,67 +82,59 @@ pub fn identify_report(
     render(include_str!("../../../../templates/identify.html.tera"), context)
 }
 
-fn joint_rows(found: &Identified) -> Vec<JointRow> {
+fn joint_rows(found: &Identified) -> Vec<Value> {
     let fit = &found.fit;
     let held_out = found.validation.as_ref().map_or(&found.cross_rms, |misses| &misses.rms);
     let free = found.unconstrained_validation.as_ref().map_or(&fit.cross_rms, |misses| &misses.rms);
-    (0..found.base.dof)
-        .map(|joint| JointRow {
-            joint: joint + 1,
-            train: fixed(found.training.rms[joint], 3),
-            held_out: fixed(held_out[joint], 3),
-            free: fixed(free[joint], 3),
-            relative: fixed(100.0 * found.training.relative[joint], 1),
-            memory: fixed(fit.memory[joint], 2),
-            white: white(fit.whiteness[joint].as_ref()),
+    let row = |joint: usize| {
+        json!({
+            "joint": joint + 1,
+            "train": fixed(found.training.rms[joint], 3),
+            "held_out": fixed(held_out[joint], 3),
+            "free": fixed(free[joint], 3),
+            "relative": percent(found.training.relative[joint]),
+            "memory": fixed(fit.memory[joint], 2),
+            "white": white(fit.whiteness[joint].as_ref()),
         })
-        .collect()
+    };
+    (0..found.base.dof).map(row).collect()
 }
 
-fn parameter_rows(found: &Identified) -> Vec<ParameterRow> {
-    let fit = &found.fit;
-    let kept = essential(fit);
-    let row = |(k, row): (usize, &usize)| {
-        let (value, sd) = (fit.solution.beta[*row], fit.covariance[(k, k)].max(0.0).sqrt());
-        ParameterRow {
-            name: found.name(*row),
-            value: fixed(value, 5),
-            low: fixed(value - INTERVAL * sd, 5),
-            high: fixed(value + INTERVAL * sd, 5),
-            essential: kept.contains(row),
-        }
+fn parameter_rows(found: &Identified) -> Vec<Value> {
+    let kept = essential(&found.fit);
+    let row = |it: Parameter| {
+        json!({
+            "name": it.name,
+            "value": fixed(it.value, 5),
+            "low": fixed(it.value - INTERVAL * it.sd, 5),
+            "high": fixed(it.value + INTERVAL * it.sd, 5),
+            "essential": kept.contains(&it.row),
+        })
     };
-    fit.solution.determined.iter().enumerate().map(row).collect()
+    base_parameters(found).into_iter().map(row).collect()
 }
 
 fn plots(traces: &Traces) -> Vec<String> {
     let first = traces.t.first().copied().unwrap_or(0.0);
-    let curve = |class: &str, values: &[f64]| Curve {
-        class: class.to_owned(),
-        points: traces.t.iter().zip(values).map(|(t, y)| [t - first, *y]).collect(),
+    let curve = |class: &str, values: &[f64]| {
+        Curve::new(class, traces.t.iter().zip(values).map(|(t, y)| [t - first, *y]))
+    };
+    let plot = |name: &str, y_title: &str, curves: Vec<Curve>| {
+        Plot { name, x_title: "time (s)", y_title, curves, rules: Vec::new() }.svg(SIZE)
     };
     let joints = traces.measured.iter().zip(&traces.predicted).enumerate();
     let mut plots: Vec<String> = joints
         .map(|(joint, (measured, predicted))| {
             let residual: Vec<f64> = measured.iter().zip(predicted).map(|(a, b)| a - b).collect();
-            let plot = Plot {
-                name: &format!("torque of joint {}", joint + 1),
-                x_title: "time (s)",
-                y_title: &format!("joint {} (Nm)", joint + 1),
-                curves: vec![curve("j1", measured), curve("j2", predicted), curve("j3", &residual)],
-                rules: Vec::new(),
-            };
-            plot.svg(SIZE)
+            plot(
+                &format!("torque of joint {}", joint + 1),
+                &format!("joint {} (Nm)", joint + 1),
+                vec![curve("j1", measured), curve("j2", predicted), curve("j3", &residual)],
+            )
         })
         .collect();
     let [measured, predicted] = &traces.power;
-    let plot = Plot {
-        name: "mechanical power of all joints",
-        x_title: "time (s)",
-        y_title: "power (W)",
-        curves: vec![curve("j1", measured), curve("j2", predicted)],
-        rules: Vec::new(),
-    };
-    plots.push(plot.svg(SIZE));
+    let curves = vec![curve("j1", measured), curve("j2", predicted)];
+    plots.push(plot("mechanical power of all joints", "power (W)", curves));
     plots
 }

@@ -3,6 +3,7 @@
 
 mod diagnose;
 mod energy_time;
+mod figure;
 mod format;
 mod grades;
 mod identify;

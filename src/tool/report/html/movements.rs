@@ -1,7 +1,8 @@
 //! Plots of each rewritten segment: before and after over time.
 
-use serde::Serialize;
+use serde_json::{Value, json};
 
+use super::figure::{Figure, LIMITS, figure};
 use super::format::{joules, seconds};
 use super::samples::{Sample, samples};
 use super::segments::numbered;
@@ -12,45 +13,16 @@ use crate::retime::optimize::corridor::Corridor;
 use crate::retime::optimize::freedom::Freedom;
 use crate::retime::path::joint_path::{DOF, Joints};
 use crate::tool::report::place::Places;
-use crate::tool::report::svg::{Curve, NEAR, Plot, Rule, Size};
+use crate::tool::report::svg::{Curve, NEAR, Size};
 use crate::tool::retrofit::Retrofit;
 
 /// Maximum number of plotted variants, those with the largest savings; more make the page slow.
 const MAX_PLOTTED: usize = 60;
 /// Size of each plot, px.
 const SIZE: Size = Size { width: 620.0, height: 250.0 };
-/// Label of the abscissa.
-const TIME: &str = "time (s)";
 
-#[derive(Serialize)]
-pub(super) struct Movement {
-    number: usize,
-    place: String,
-    ways: Vec<WayPlots>,
-    /// Number of variants without plots.
-    left_out: usize,
-}
-
-/// The plots of one variant.
-#[derive(Serialize)]
-struct WayPlots {
-    name: String,
-    executions: usize,
-    time_before: String,
-    time_after: String,
-    energy_before: String,
-    energy_after: String,
-    plots: Vec<Figure>,
-}
-
-/// A plot with its caption.
-#[derive(Serialize)]
-struct Figure {
-    caption: &'static str,
-    svg: String,
-}
-
-pub(super) fn movements(retrofit: &Retrofit, model: &Model, places: Places<'_>) -> Vec<Movement> {
+/// The rewritten segments with the plots of their variants, for the template.
+pub(super) fn movements(retrofit: &Retrofit, model: &Model, places: Places<'_>) -> Vec<Value> {
     let rewritten: Vec<_> = numbered(retrofit)
         .filter(|(_, segment)| segment.rewritten)
         .map(|(number, segment)| (number, segment.span, ways(retrofit, segment)))
@@ -60,18 +32,19 @@ pub(super) fn movements(retrofit: &Retrofit, model: &Model, places: Places<'_>) 
         .into_iter()
         .map(|(number, span, ways)| {
             let all = ways.len();
-            let plotted: Vec<WayPlots> = ways
+            let plotted: Vec<Value> = ways
                 .iter()
                 .enumerate()
                 .filter(|(_, way)| saved(retrofit, way) >= least)
                 .map(|(i, way)| way_plots(retrofit, model, way, i, all))
                 .collect();
-            Movement {
-                number,
-                place: places.of(span).to_string(),
-                left_out: all - plotted.len(),
-                ways: plotted,
-            }
+            json!({
+                "number": number,
+                "place": places.of(span).to_string(),
+                // Variants without plots.
+                "left_out": all - plotted.len(),
+                "ways": plotted,
+            })
         })
         .collect()
 }
@@ -97,41 +70,38 @@ fn energies(retrofit: &Retrofit, way: &Way<'_>) -> [f64; 2] {
     [energy(&retrofit.before.1), energy(&retrofit.after.1)]
 }
 
-fn way_plots(
-    retrofit: &Retrofit,
-    model: &Model,
-    way: &Way<'_>,
-    index: usize,
-    all: usize,
-) -> WayPlots {
+fn way_plots(retrofit: &Retrofit, model: &Model, way: &Way<'_>, index: usize, all: usize) -> Value {
     let corridor = Corridor::new(model, way.before, &Freedom::default());
     let sides = [way.before, way.after].map(|run| samples(model, run, corridor.as_ref()));
     let [energy_before, energy_after] = energies(retrofit, way).map(joules);
-    WayPlots {
-        name: if all > 1 { format!("way {} of {all}", index + 1) } else { String::new() },
-        executions: way.executions,
-        time_before: seconds(way.before.duration()),
-        time_after: seconds(way.after.duration()),
-        energy_before,
-        energy_after,
-        plots: plots(model, &sides),
-    }
+    json!({
+        "name": if all > 1 { format!("way {} of {all}", index + 1) } else { String::new() },
+        "executions": way.executions,
+        "time_before": seconds(way.before.duration()),
+        "time_after": seconds(way.after.duration()),
+        "energy_before": energy_before,
+        "energy_after": energy_after,
+        "plots": plots(model, &sides),
+    })
 }
 
 fn plots(model: &Model, sides: &[Vec<Sample>; 2]) -> Vec<Figure> {
     let mut figures = Vec::new();
     if let Some(limit) = &model.limits.velocity {
-        figures
-            .push(shares("Joint speeds", "share of the speed limit (%)", sides, limit, |s| s.qd));
+        let curves = shares(sides, limit, |s| s.qd);
+        let title = "share of the speed limit (%)";
+        figures.push(figure("Joint speeds", title, curves, &LIMITS, SIZE));
     }
     if let Some(limit) = &model.limits.torque {
+        let curves = shares(sides, limit, |s| s.tau);
         let title = "share of the torque limit (%)";
-        figures.push(shares("Joint torques", title, sides, limit, |s| s.tau));
+        figures.push(figure("Joint torques", title, curves, &LIMITS, SIZE));
     }
-    figures.push(figure("Electrical power", "power (W)", pair(sides, |s| s.electrical_w), vec![]));
+    let power = pair(sides, |s| s.electrical_w);
+    figures.push(figure("Electrical power", "power (W)", power, &[], SIZE));
     let mut curves = pair(sides, |s| s.tcp_speed);
     curves.insert(0, ceiling(sides));
-    figures.push(figure("TCP speed", "speed (m/s)", curves, vec![]));
+    figures.push(figure("TCP speed", "speed (m/s)", curves, &[], SIZE));
     figures
 }
 
@@ -139,48 +109,31 @@ fn plots(model: &Model, sides: &[Vec<Sample>; 2]) -> Vec<Figure> {
 fn ceiling(sides: &[Vec<Sample>; 2]) -> Curve {
     let fastest = sides.iter().flatten().map(|s| s.tcp_speed).fold(0.0, f64::max);
     let near = |s: &Sample| if NEAR * s.ceiling <= fastest { s.ceiling } else { f64::NAN };
-    Curve { class: "ceiling".into(), points: sides[1].iter().map(|s| [s.t, near(s)]).collect() }
+    Curve::new("ceiling", sides[1].iter().map(|s| [s.t, near(s)]))
 }
 
 /// Signed shares of the limits of six joints.
 fn shares(
-    caption: &'static str,
-    title: &'static str,
     sides: &[Vec<Sample>; 2],
     limit: &[f64],
     value: impl Fn(&Sample) -> Joints,
-) -> Figure {
+) -> Vec<Curve> {
     let mut curves = Vec::new();
     for (side, samples) in ["before", "after"].into_iter().zip(sides) {
         for j in 0..DOF.min(limit.len()) {
-            curves.push(Curve {
-                class: format!("{side} j{}", j + 1),
-                points: samples.iter().map(|s| [s.t, 100.0 * value(s)[j] / limit[j]]).collect(),
-            });
+            let points = samples.iter().map(|s| [s.t, 100.0 * value(s)[j] / limit[j]]);
+            curves.push(Curve::new(format!("{side} j{}", j + 1), points));
         }
     }
-    let rules = vec![Rule { value: 100.0, label: "limit" }, Rule { value: -100.0, label: "limit" }];
-    figure(caption, title, curves, rules)
+    curves
 }
 
 /// One quantity before and after.
 fn pair(sides: &[Vec<Sample>; 2], value: impl Fn(&Sample) -> f64) -> Vec<Curve> {
-    ["before", "after"]
-        .into_iter()
-        .zip(sides)
-        .map(|(side, samples)| Curve {
-            class: format!("{side} one"),
-            points: samples.iter().map(|s| [s.t, value(s)]).collect(),
+    let sides = ["before", "after"].into_iter().zip(sides);
+    sides
+        .map(|(side, samples)| {
+            Curve::new(format!("{side} one"), samples.iter().map(|s| [s.t, value(s)]))
         })
         .collect()
-}
-
-fn figure(
-    caption: &'static str,
-    title: &'static str,
-    curves: Vec<Curve>,
-    rules: Vec<Rule>,
-) -> Figure {
-    let plot = Plot { name: caption, x_title: TIME, y_title: title, curves, rules };
-    Figure { caption, svg: plot.svg(SIZE) }
 }

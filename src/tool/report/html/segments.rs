@@ -1,56 +1,11 @@
 //! The table of segments. With the rest it adds up to the cycle.
 
-use serde::Serialize;
+use serde_json::{Value, json};
 
 use super::format::{fixed, joules, saved_percent, seconds};
 use crate::retime::optimize::reason::Reason;
 use crate::tool::report::place::Places;
 use crate::tool::retrofit::{Retrofit, Segment, SegmentKind};
-
-#[derive(Serialize)]
-pub(super) struct Row {
-    number: usize,
-    place: String,
-    kind: &'static str,
-    rewritten: bool,
-    executions: usize,
-    rewritten_executions: usize,
-    costs: Costs,
-    bound: Option<String>,
-    points: Option<usize>,
-    reason: Option<ReasonText>,
-    potential: Option<String>,
-}
-
-/// Time and energy before and after.
-#[derive(Serialize)]
-pub(super) struct Costs {
-    time_before: String,
-    time_after: String,
-    energy_before: String,
-    energy_after: String,
-    saved: String,
-    saved_percent: String,
-}
-
-/// Why a segment is unchanged.
-#[derive(Serialize)]
-pub(super) struct ReasonText {
-    code: &'static str,
-    words: String,
-}
-
-#[derive(Serialize)]
-pub(super) struct Table {
-    rows: Vec<Row>,
-    /// The wait that the padding adds to the original.
-    padding: Option<Costs>,
-    /// Events outside all segments: short waits.
-    rest: Costs,
-    total: Costs,
-    /// Places of movements that never run in the cycle.
-    not_reached: Vec<String>,
-}
 
 /// Time (s) and energy (J) before and after.
 #[derive(Clone, Copy, Default)]
@@ -72,20 +27,21 @@ impl Sums {
         Sums { time: sum(self.time, other.time), energy: sum(self.energy, other.energy) }
     }
 
-    fn text(&self) -> Costs {
+    fn text(&self) -> Value {
         let [before, after] = self.energy;
-        Costs {
-            time_before: seconds(self.time[0]),
-            time_after: seconds(self.time[1]),
-            energy_before: joules(before),
-            energy_after: joules(after),
-            saved: joules(before - after),
-            saved_percent: fixed(saved_percent(before, after), 1),
-        }
+        json!({
+            "time_before": seconds(self.time[0]),
+            "time_after": seconds(self.time[1]),
+            "energy_before": joules(before),
+            "energy_after": joules(after),
+            "saved": joules(before - after),
+            "saved_percent": fixed(saved_percent(before, after), 1),
+        })
     }
 }
 
-pub(super) fn segments(retrofit: &Retrofit, places: Places<'_>) -> Table {
+/// The table for the template.
+pub(super) fn segments(retrofit: &Retrofit, places: Places<'_>) -> Value {
     let total = Sums {
         time: [retrofit.original.cycle_s, retrofit.optimized.cycle_s],
         energy: [retrofit.original.energy_j, retrofit.optimized.energy_j],
@@ -96,18 +52,18 @@ pub(super) fn segments(retrofit: &Retrofit, places: Places<'_>) -> Table {
     });
     let listed = retrofit.segments.iter().map(Sums::of).chain(padding);
     let listed = listed.fold(Sums::default(), |sum, costs| sum.with(costs, 1.0));
-    Table {
-        rows: numbered(retrofit).map(|(number, segment)| row(number, segment, places)).collect(),
-        padding: padding.map(|sums| sums.text()),
-        rest: total.with(listed, -1.0).text(),
-        total: total.text(),
-        not_reached: retrofit
-            .segments
-            .iter()
-            .filter(|segment| segment.executions == 0)
-            .map(|segment| places.of(segment.span).to_string())
-            .collect(),
-    }
+    let rows = numbered(retrofit).map(|(number, segment)| row(number, segment, places));
+    let not_reached = retrofit.segments.iter().filter(|segment| segment.executions == 0);
+    let not_reached = not_reached.map(|segment| places.of(segment.span).to_string());
+    json!({
+        "rows": rows.collect::<Vec<_>>(),
+        // The wait that the padding adds to the original.
+        "padding": padding.map(|sums| sums.text()),
+        // Events outside all segments: short waits.
+        "rest": total.with(listed, -1.0).text(),
+        "total": total.text(),
+        "not_reached": not_reached.collect::<Vec<_>>(),
+    })
 }
 
 /// The executed segments with their numbers in the report.
@@ -120,29 +76,29 @@ pub(super) fn numbered(retrofit: &Retrofit) -> impl Iterator<Item = (usize, &Seg
         .map(|(i, segment)| (i + 1, segment))
 }
 
-fn row(number: usize, segment: &Segment, places: Places<'_>) -> Row {
-    Row {
-        number,
-        place: places.of(segment.span).to_string(),
-        kind: match segment.kind {
+fn row(number: usize, segment: &Segment, places: Places<'_>) -> Value {
+    json!({
+        "number": number,
+        "place": places.of(segment.span).to_string(),
+        "kind": match segment.kind {
             SegmentKind::Timing => "movement",
             SegmentKind::Path => "free movement",
             SegmentKind::Idle => "dwell",
         },
-        rewritten: segment.rewritten,
-        executions: segment.executions,
-        rewritten_executions: segment.rewritten_executions,
-        costs: Sums::of(segment).text(),
-        bound: segment.lower_bound_j.map(joules),
-        points: segment.rewritten.then_some(segment.points),
-        reason: segment.reason.as_ref().map(reason),
-        potential: (segment.potential_j > 0.0).then(|| joules(segment.potential_j)),
-    }
+        "rewritten": segment.rewritten,
+        "executions": segment.executions,
+        "rewritten_executions": segment.rewritten_executions,
+        "costs": Sums::of(segment).text(),
+        "bound": segment.lower_bound_j.map(joules),
+        "points": segment.rewritten.then_some(segment.points),
+        "reason": segment.reason.as_ref().map(reason),
+        "potential": (segment.potential_j > 0.0).then(|| joules(segment.potential_j)),
+    })
 }
 
-fn reason(reason: &Reason) -> ReasonText {
+fn reason(reason: &Reason) -> Value {
     let code = reason.code();
     let text = reason.to_string();
     let words = text.strip_prefix(code).map_or(&*text, |rest| rest.trim_start_matches(": "));
-    ReasonText { code, words: words.to_owned() }
+    json!({ "code": code, "words": words })
 }

@@ -4,23 +4,23 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use serde::Serialize;
+use serde_json::{Value, json};
 use tera::Context;
 
+use super::figure::{Figure, LIMITS, figure};
 use super::format::{joules, seconds};
 use super::page::{ReportError, render};
-use super::source::text;
+use super::proof::unresolved;
+use super::source::{at_span, shown_lines, text};
 use crate::arm::robot::Model;
-use crate::rapid::text::{SourceFile, Span};
-use crate::retime::energy::Account;
+use crate::rapid::text::SourceFile;
 use crate::retime::energy::trajectory::Sample;
-use crate::retime::motion::Simulation;
-use crate::retime::motion::timeline::{WaitBasis, What};
+use crate::retime::motion::timeline::WaitBasis;
 use crate::retime::path::joint_path::DOF;
 use crate::tool::report::place::Places;
 use crate::tool::report::plausible::energies;
-use crate::tool::report::simulated::Simulated;
-use crate::tool::report::svg::{Curve, Plot, Rule, Scale, Size, escape};
+use crate::tool::report::simulated::{Simulated, Step, StepKind};
+use crate::tool::report::svg::{Curve, Scale, Size, escape};
 
 const SIZE: Size = Size { width: 1260.0, height: 280.0 };
 /// Maximum number of points of a curve.
@@ -38,50 +38,6 @@ const TICKS: usize = 10;
 /// Number of lines shown around lines with costs.
 const CONTEXT: u32 = 2;
 
-/// A movement or a wait of the cycle.
-struct Step<'a> {
-    span: Span,
-    instruction: &'a str,
-    routine: &'a str,
-    begin: f64,
-    duration: f64,
-    energy: f64,
-    waits: bool,
-    /// Whether it is a wait of unknown length, which counts as 0 s.
-    unknown: bool,
-}
-
-#[derive(Serialize)]
-struct Figure {
-    caption: &'static str,
-    svg: String,
-}
-
-#[derive(Serialize)]
-struct Annotated {
-    path: String,
-    energy: String,
-    lines: Vec<Line>,
-}
-
-#[derive(Serialize)]
-struct Line {
-    number: u32,
-    /// Number of lines left out before it.
-    gap: u32,
-    text: String,
-    time: Option<String>,
-    energy: Option<String>,
-    /// Energy relative to the most expensive line of all files, %.
-    heat: Option<String>,
-}
-
-#[derive(Serialize)]
-struct Noted {
-    place: String,
-    reason: String,
-}
-
 /// The HTML report of a simulation. `samples`: its planned motion; `files` are indexed by file id.
 ///
 /// # Errors
@@ -93,7 +49,7 @@ pub fn simulate_report(
 ) -> Result<String, ReportError> {
     let Simulated { model, entry, simulation, account, plausible } = of;
     let places = Places::new(files);
-    let steps = steps(simulation, account);
+    let steps = of.steps();
     let known = model.has_dynamics();
     let mut context = Context::new();
     context.insert("robot", &model.name);
@@ -102,58 +58,19 @@ pub fn simulate_report(
     context.insert("energy", &known.then(|| joules(account.total.energy_j())));
     context.insert("motion_energy", &known.then(|| joules(account.total.motion_energy_j())));
     context.insert("plausible", &plausible.map(energies).unwrap_or_default());
-    context.insert("movements", &steps.iter().filter(|step| !step.waits).count());
-    context.insert("waits", &steps.iter().filter(|step| step.waits).count());
-    context.insert("unknown", &steps.iter().filter(|step| step.unknown).count());
+    let count = |is: fn(StepKind<'_>) -> bool| steps.iter().filter(|step| is(step.kind)).count();
+    context.insert("movements", &count(|kind| matches!(kind, StepKind::Move(_))));
+    context.insert("waits", &count(|kind| matches!(kind, StepKind::Wait(_))));
+    context.insert("unknown", &count(|kind| matches!(kind, StepKind::Wait(WaitBasis::Unknown))));
     context.insert("bars", &bars(&steps, simulation.cycle_s, places));
     context.insert("figures", &figures(model, samples));
     context.insert("joints", &(1..=DOF).collect::<Vec<usize>>());
     context.insert("sources", &sources(&steps, files, known));
-    let notes = simulation
-        .unresolved
-        .iter()
-        .map(|note| Noted { place: places.of(note.span).to_string(), reason: note.reason.clone() });
-    context.insert("unresolved", &notes.collect::<Vec<_>>());
+    context.insert("unresolved", &unresolved(simulation, places));
     let mut assumed = simulation.assumed.clone();
     assumed.extend(model.assumed());
     context.insert("assumed", &assumed);
     render(include_str!("../../../../templates/simulation.html.tera"), context)
-}
-
-fn steps<'a>(simulation: &'a Simulation, account: &Account) -> Vec<Step<'a>> {
-    let mut steps = Vec::new();
-    for (event, parts) in simulation.events.iter().zip(&account.events) {
-        let energy =
-            |i: usize| parts.get(i).map_or(0.0, crate::retime::energy::EnergyParts::energy_j);
-        match &event.what {
-            What::Run(run) => {
-                for (i, record) in run.moves.iter().enumerate() {
-                    steps.push(Step {
-                        span: record.movement.span,
-                        instruction: &record.movement.instruction,
-                        routine: &record.movement.routine,
-                        begin: event.t_start + record.t_start,
-                        duration: record.duration,
-                        energy: energy(i),
-                        waits: false,
-                        unknown: false,
-                    });
-                }
-            }
-            What::Wait(record) => steps.push(Step {
-                span: record.wait.span,
-                instruction: &record.wait.instruction,
-                routine: &record.wait.routine,
-                begin: event.t_start,
-                duration: event.duration,
-                energy: energy(0),
-                waits: true,
-                unknown: record.basis == WaitBasis::Unknown,
-            }),
-            What::Output(..) | What::Left(_) => {}
-        }
-    }
-    steps
 }
 
 /// The cycle as bars over time: a row per statement in order of the first execution, or per routine
@@ -199,11 +116,11 @@ fn bars(steps: &[Step<'_>], cycle: f64, places: Places<'_>) -> String {
             escape(&shortened(name))
         );
         for step in members {
-            let (a, b) = (at(step.begin), at(step.begin + step.duration));
-            let (class, least) = match (step.unknown, step.waits) {
-                (true, _) => ("friction", UNKNOWN_WIDTH),
-                (false, true) => ("idle", 0.5),
-                (false, false) => ("mechanical", 0.5),
+            let (a, b) = (at(step.t_start), at(step.t_start + step.duration));
+            let (class, least) = match step.kind {
+                StepKind::Wait(WaitBasis::Unknown) => ("friction", UNKNOWN_WIDTH),
+                StepKind::Wait(_) => ("idle", 0.5),
+                StepKind::Move(_) => ("mechanical", 0.5),
             };
             let _ = write!(
                 out,
@@ -215,8 +132,8 @@ fn bars(steps: &[Step<'_>], cycle: f64, places: Places<'_>) -> String {
                 escape(&places.of(step.span).to_string()),
                 escape(step.instruction),
                 seconds(step.duration),
-                seconds(step.begin),
-                joules(step.energy),
+                seconds(step.t_start),
+                joules(step.energy_j),
             );
         }
     }
@@ -275,67 +192,50 @@ fn figures(model: &Model, samples: &[Sample]) -> Vec<Figure> {
     let stride = samples.len().div_ceil(MAX_POINTS).max(1);
     let chosen: Vec<&Sample> = samples.iter().step_by(stride).collect();
     let one = |value: &dyn Fn(&Sample) -> f64| {
-        let points = chosen.iter().map(|s| [s.t, value(s)]).collect();
-        vec![Curve { class: "one".into(), points }]
+        vec![Curve::new("one", chosen.iter().map(|s| [s.t, value(s)]))]
     };
     let joints = |value: &dyn Fn(&Sample, usize) -> f64| -> Vec<Curve> {
-        (0..DOF)
-            .map(|j| Curve {
-                class: format!("j{}", j + 1),
-                points: chosen.iter().map(|s| [s.t, value(s, j)]).collect(),
-            })
-            .collect()
+        let points = |j| chosen.iter().map(move |s| [s.t, value(s, j)]);
+        (0..DOF).map(|j| Curve::new(format!("j{}", j + 1), points(j))).collect()
     };
-    let both = || [100.0, -100.0].map(|value| Rule { value, label: "limit" }).to_vec();
     let limits = &model.limits;
     let share = "share of the limit (%)";
     let mut figures = Vec::new();
     if model.has_dynamics() {
         let curves = one(&|s| s.electrical_w.unwrap_or(f64::NAN));
-        figures.push(figure("Electrical power", "power (W)", curves, Vec::new()));
+        figures.push(figure("Electrical power", "power (W)", curves, &[], SIZE));
     }
-    figures.push(figure("TCP speed", "speed (m/s)", one(&|s| s.tcp_speed), Vec::new()));
+    figures.push(figure("TCP speed", "speed (m/s)", one(&|s| s.tcp_speed), &[], SIZE));
     // −100 % at the lower end of the range, 100 % at the upper one.
     let place = joints(&|s, j| {
         let [low, high] = limits.position_at(&s.state.q, j);
         100.0 * (2.0 * s.state.q[j] - low - high) / (high - low)
     });
-    figures.push(figure("Joint positions in their ranges", share, place, both()));
+    figures.push(figure("Joint positions in their ranges", share, place, &LIMITS, SIZE));
     if let Some(limit) = &limits.velocity {
         let curves = joints(&|s, j| 100.0 * s.state.qd[j] / limit[j]);
-        figures.push(figure("Joint speeds", share, curves, both()));
+        figures.push(figure("Joint speeds", share, curves, &LIMITS, SIZE));
     }
     if let Some(limit) = &limits.acceleration {
         let curves = joints(&|s, j| 100.0 * s.state.qdd[j] / limit[j]);
-        figures.push(figure("Joint accelerations", share, curves, both()));
+        figures.push(figure("Joint accelerations", share, curves, &LIMITS, SIZE));
     }
     if let Some(limit) = &limits.torque {
         let tau = |s: &Sample, j: usize| s.power.as_ref().map_or(f64::NAN, |p| p.tau[j]);
         let curves = joints(&|s, j| 100.0 * tau(s, j) / limit[j]);
-        figures.push(figure("Joint torques", share, curves, both()));
+        figures.push(figure("Joint torques", share, curves, &LIMITS, SIZE));
     }
     figures
 }
 
-fn figure(
-    caption: &'static str,
-    y_title: &'static str,
-    curves: Vec<Curve>,
-    rules: Vec<Rule>,
-) -> Figure {
-    let plot = Plot { name: caption, x_title: "time (s)", y_title, curves, rules };
-    Figure { caption, svg: plot.svg(SIZE) }
-}
-
 /// The files with steps, with time and energy by line.
-fn sources(steps: &[Step<'_>], files: &[SourceFile], known: bool) -> Vec<Annotated> {
+fn sources(steps: &[Step<'_>], files: &[SourceFile], known: bool) -> Vec<Value> {
     let mut costs: Vec<BTreeMap<u32, [f64; 2]>> = vec![BTreeMap::new(); files.len()];
     for step in steps {
-        let index = step.span.file.0 as usize;
-        if let (Some(file), Some(costs)) = (files.get(index), costs.get_mut(index)) {
-            let line = costs.entry(file.position(step.span.start).line).or_default();
+        if let Some((costs, [line, _])) = at_span(files, &mut costs, step.span) {
+            let line = costs.entry(line).or_default();
             line[0] += step.duration;
-            line[1] += step.energy;
+            line[1] += step.energy_j;
         }
     }
     let hottest = costs.iter().flat_map(BTreeMap::values).map(|cost| cost[1]).fold(0.0, f64::max);
@@ -349,25 +249,21 @@ fn annotated(
     costs: &BTreeMap<u32, [f64; 2]>,
     hottest: f64,
     known: bool,
-) -> Annotated {
-    let mut lines = Vec::new();
-    let mut last = 0;
-    for line in costs.keys() {
-        let from = line.saturating_sub(CONTEXT).max(last + 1);
-        for number in from..=(line + CONTEXT).min(file.lines.count()) {
-            let cost = costs.get(&number);
-            let hot = cost.filter(|cost| cost[1] > 0.0 && known);
-            lines.push(Line {
-                number,
-                gap: number - last - 1,
-                text: text(file, number),
-                time: cost.map(|cost| seconds(cost[0])),
-                energy: cost.filter(|_| known).map(|cost| joules(cost[1])),
-                heat: hot.map(|cost| format!("{:.0}", 100.0 * cost[1] / hottest)),
-            });
-            last = number;
-        }
-    }
+) -> Value {
+    let ranges = costs.keys().map(|line| (*line, *line));
+    let line = |(number, gap): (u32, u32)| {
+        let cost = costs.get(&number);
+        let hot = cost.filter(|cost| cost[1] > 0.0 && known);
+        json!({
+            "number": number,
+            "gap": gap,
+            "text": text(file, number),
+            "time": cost.map(|cost| seconds(cost[0])),
+            "energy": cost.filter(|_| known).map(|cost| joules(cost[1])),
+            "heat": hot.map(|cost| format!("{:.0}", 100.0 * cost[1] / hottest)),
+        })
+    };
     let energy = joules(costs.values().map(|cost| cost[1]).sum());
-    Annotated { path: file.path.clone(), energy, lines }
+    let lines: Vec<Value> = shown_lines(file, ranges, CONTEXT).into_iter().map(line).collect();
+    json!({ "path": file.path, "energy": energy, "lines": lines })
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde_json::{Value, json};
 
 use super::format::joules;
 use crate::rapid::text::{SourceFile, Span};
@@ -14,38 +14,6 @@ use crate::tool::retrofit::Retrofit;
 const CONTEXT: u32 = 3;
 /// Maximum number of shown characters of a line.
 const MAX_CHARACTERS: usize = 300;
-
-/// A file with at least one line with costs.
-#[derive(Serialize)]
-pub(super) struct Annotated {
-    path: String,
-    before: String,
-    after: String,
-    lines: Vec<Line>,
-}
-
-/// A shown line.
-#[derive(Serialize)]
-struct Line {
-    /// From 1.
-    number: u32,
-    /// Number of lines left out before it.
-    gap: u32,
-    text: String,
-    before: Option<String>,
-    /// Energy relative to the most expensive line of the file, %.
-    heat: Option<String>,
-    /// The cell with the energy after the retrofit, unless a cell above spans this row.
-    after: Option<Cell>,
-}
-
-/// Energy of one or several lines.
-#[derive(Serialize)]
-struct Cell {
-    rows: u32,
-    text: String,
-    rewritten: bool,
-}
 
 /// Energies of the lines of a file, J.
 #[derive(Default)]
@@ -75,8 +43,8 @@ impl Costs {
     }
 }
 
-/// The files with costs, in order.
-pub(super) fn sources(retrofit: &Retrofit, files: &[SourceFile]) -> Vec<Annotated> {
+/// The files with costs, in order, for the template.
+pub(super) fn sources(retrofit: &Retrofit, files: &[SourceFile]) -> Vec<Value> {
     let mut all: Vec<Costs> = files.iter().map(|_| Costs::default()).collect();
     streams(retrofit, files, &mut all);
     moves_and_waits(retrofit, files, &mut all);
@@ -90,9 +58,7 @@ pub(super) fn sources(retrofit: &Retrofit, files: &[SourceFile]) -> Vec<Annotate
 
 fn streams(retrofit: &Retrofit, files: &[SourceFile], all: &mut [Costs]) {
     for segment in retrofit.segments.iter().filter(|segment| segment.rewritten) {
-        let index = segment.span.file.0 as usize;
-        let (Some(file), Some(costs)) = (files.get(index), all.get_mut(index)) else { continue };
-        let [first, last] = lines(file, segment.span);
+        let Some((costs, [first, last])) = at_span(files, all, segment.span) else { continue };
         costs.add_stream(first, last, segment.energy_after_j);
     }
 }
@@ -106,11 +72,7 @@ fn moves_and_waits(retrofit: &Retrofit, files: &[SourceFile], all: &mut [Costs])
             What::Output(..) | What::Left(_) => continue,
         };
         for (k, span) in spans.into_iter().enumerate() {
-            let index = span.file.0 as usize;
-            let (Some(file), Some(costs)) = (files.get(index), all.get_mut(index)) else {
-                continue;
-            };
-            let [line, _] = lines(file, span);
+            let Some((costs, [line, _])) = at_span(files, all, span) else { continue };
             let energy = |events: &[Vec<EnergyParts>]| {
                 events.get(i).and_then(|parts| parts.get(k)).map_or(0.0, EnergyParts::energy_j)
             };
@@ -122,55 +84,75 @@ fn moves_and_waits(retrofit: &Retrofit, files: &[SourceFile], all: &mut [Costs])
     }
 }
 
-/// First and last line of a span.
-fn lines(file: &SourceFile, span: Span) -> [u32; 2] {
+/// The costs of the file of a span, and the first and the last line of the span.
+pub(super) fn at_span<'c, T>(
+    files: &[SourceFile],
+    costs: &'c mut [T],
+    span: Span,
+) -> Option<(&'c mut T, [u32; 2])> {
+    let index = span.file.0 as usize;
+    let (file, costs) = (files.get(index)?, costs.get_mut(index)?);
     let last = span.end.max(span.start + 1) - 1;
-    [file.position(span.start).line, file.position(last).line]
+    Some((costs, [file.position(span.start).line, file.position(last).line]))
 }
 
-fn annotated(file: &SourceFile, costs: &Costs) -> Annotated {
-    let count = file.lines.count();
+/// The lines in ranges and `margin` lines around them, each with the number of lines left out
+/// before it. The ranges are sorted.
+pub(super) fn shown_lines(
+    file: &SourceFile,
+    ranges: impl IntoIterator<Item = (u32, u32)>,
+    margin: u32,
+) -> Vec<(u32, u32)> {
+    let mut shown = Vec::new();
+    let mut previous = 0;
+    for (first, last) in ranges {
+        let from = first.saturating_sub(margin).max(previous + 1);
+        for number in from..=(last + margin).min(file.lines.count()) {
+            shown.push((number, number - previous - 1));
+            previous = number;
+        }
+    }
+    shown
+}
+
+fn annotated(file: &SourceFile, costs: &Costs) -> Value {
     let hottest = costs.before.values().copied().fold(0.0, f64::max);
-    let mut shown: Vec<u32> = Vec::new();
     let ends = costs.streams.iter().map(|(first, (last, _))| (*first, *last));
     let mut ranges: Vec<(u32, u32)> =
         costs.before.keys().map(|line| (*line, *line)).chain(ends).collect();
     ranges.sort_unstable();
-    for (first, last) in ranges {
-        let from = first.saturating_sub(CONTEXT).max(1).max(shown.last().map_or(1, |n| n + 1));
-        shown.extend(from..=(last + CONTEXT).min(count));
-    }
     let mut lines = Vec::new();
-    let mut previous = 0;
     let mut covered = 0;
-    for number in shown {
+    for (number, gap) in shown_lines(file, ranges, CONTEXT) {
         let before = costs.before.get(&number);
+        // The cell of a stream spans several rows.
         let after = if number <= covered {
             None
         } else if let Some((last, energy)) = costs.streams.get(&number) {
             covered = *last;
-            Some(Cell { rows: last - number + 1, text: joules(*energy), rewritten: true })
+            let rows = last - number + 1;
+            Some(json!({ "rows": rows, "text": joules(*energy), "rewritten": true }))
         } else {
             let text = costs.after.get(&number).map(|x| joules(*x)).unwrap_or_default();
-            Some(Cell { rows: 1, text, rewritten: false })
+            Some(json!({ "rows": 1, "text": text, "rewritten": false }))
         };
-        lines.push(Line {
-            number,
-            gap: number - previous - 1,
-            text: text(file, number),
-            before: before.map(|x| joules(*x)),
-            heat: before.filter(|x| **x > 0.0).map(|x| format!("{:.0}", 100.0 * x / hottest)),
-            after,
-        });
-        previous = number;
+        let heat = before.filter(|x| **x > 0.0).map(|x| format!("{:.0}", 100.0 * x / hottest));
+        lines.push(json!({
+            "number": number,
+            "gap": gap,
+            "text": text(file, number),
+            "before": before.map(|x| joules(*x)),
+            "heat": heat,
+            "after": after,
+        }));
     }
     let streamed: f64 = costs.streams.values().map(|(_, energy)| energy).sum();
-    Annotated {
-        path: file.path.clone(),
-        before: joules(costs.before.values().sum()),
-        after: joules(costs.after.values().sum::<f64>() + streamed),
-        lines,
-    }
+    json!({
+        "path": file.path,
+        "before": joules(costs.before.values().sum()),
+        "after": joules(costs.after.values().sum::<f64>() + streamed),
+        "lines": lines,
+    })
 }
 
 /// A line without line ending and control characters, truncated if very long.

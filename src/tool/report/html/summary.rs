@@ -2,43 +2,12 @@
 
 use std::fmt::Write;
 
-use serde::Serialize;
+use serde_json::{Value, json};
 
 use super::format::{fixed, joules, saved_percent, seconds};
 use crate::retime::energy::EnergyParts;
 use crate::tool::report::svg::Scale;
 use crate::tool::retrofit::{Retrofit, SegmentKind};
-
-#[derive(Serialize)]
-pub(super) struct Card {
-    name: &'static str,
-    unit: &'static str,
-    before: String,
-    after: String,
-    /// In words.
-    change: String,
-}
-
-#[derive(Serialize)]
-pub(super) struct Part {
-    name: &'static str,
-    what: &'static str,
-    class: &'static str,
-    before: String,
-    after: String,
-    saved: String,
-}
-
-#[derive(Serialize)]
-pub(super) struct Summary {
-    cards: Vec<Card>,
-    parts: Vec<Part>,
-    bars: String,
-    /// Further saving by brakes, J; `None` for zero.
-    potential: Option<String>,
-    rewritten: usize,
-    movements: usize,
-}
 
 /// Style class, name, explanation and value of a part.
 type PartOf = (&'static str, &'static str, &'static str, fn(&EnergyParts) -> f64);
@@ -52,50 +21,55 @@ const PARTS: [PartOf; 6] = [
     ("brake", "brake", "keeping brakes open, and opening them", |p| p.brake_j),
 ];
 
-pub(super) fn summary(retrofit: &Retrofit) -> Summary {
+/// The head for the template.
+pub(super) fn summary(retrofit: &Retrofit) -> Value {
     let (before, after) = (&retrofit.original, &retrofit.optimized);
-    let energy = |name, before, after| Card {
-        name,
-        unit: "J",
-        before: joules(before),
-        after: joules(after),
-        change: change(before, after, "saved", "more"),
+    let energy = |name: &str, before, after| {
+        json!({
+            "name": name,
+            "unit": "J",
+            "before": joules(before),
+            "after": joules(after),
+            "change": change(before, after, "saved", "more"),
+        })
     };
     let mut padded = retrofit.before.1.total;
     if let Some(padding) = &retrofit.padding {
         padded += padding.energy;
     }
-    let parts = [&padded, &retrofit.after.1.total];
+    let sides = [&padded, &retrofit.after.1.total];
+    let part = |(class, name, what, value): &PartOf| {
+        let [before, after] = sides.map(value);
+        json!({
+            "name": name,
+            "what": what,
+            "class": class,
+            "before": joules(before),
+            "after": joules(after),
+            "saved": joules(before - after),
+        })
+    };
     let eligible =
         retrofit.segments.iter().filter(|s| s.kind != SegmentKind::Idle && s.executions > 0);
-    Summary {
-        cards: vec![
-            Card {
-                name: "Cycle time",
-                unit: "s",
-                before: seconds(before.cycle_s),
-                after: seconds(after.cycle_s),
-                change: change(before.cycle_s, after.cycle_s, "shorter", "longer"),
+    json!({
+        "cards": [
+            {
+                "name": "Cycle time",
+                "unit": "s",
+                "before": seconds(before.cycle_s),
+                "after": seconds(after.cycle_s),
+                "change": change(before.cycle_s, after.cycle_s, "shorter", "longer"),
             },
             energy("Energy", before.energy_j, after.energy_j),
             energy("Motion energy", before.motion_energy_j, after.motion_energy_j),
         ],
-        parts: PARTS
-            .iter()
-            .map(|(class, name, what, value)| Part {
-                name,
-                what,
-                class,
-                before: joules(value(parts[0])),
-                after: joules(value(parts[1])),
-                saved: joules(value(parts[0]) - value(parts[1])),
-            })
-            .collect(),
-        bars: bars(parts),
-        potential: (retrofit.potential_j > 0.0).then(|| joules(retrofit.potential_j)),
-        rewritten: eligible.clone().filter(|s| s.rewritten).count(),
-        movements: eligible.count(),
-    }
+        "parts": PARTS.iter().map(part).collect::<Vec<_>>(),
+        "bars": bars(sides),
+        // Further saving by brakes.
+        "potential": (retrofit.potential_j > 0.0).then(|| joules(retrofit.potential_j)),
+        "rewritten": eligible.clone().filter(|s| s.rewritten).count(),
+        "movements": eligible.count(),
+    })
 }
 
 fn change(before: f64, after: f64, less: &str, more: &str) -> String {

@@ -9,7 +9,7 @@ use crate::tool::lint::{Applicability, Finding, Report};
 use crate::tool::report::table::{Align, table};
 
 /// Number of findings in the list of largest savings.
-const TOP: usize = 10;
+const MAX_LISTED: usize = 10;
 
 /// Each finding with its source, separated by empty lines.
 #[must_use]
@@ -104,7 +104,7 @@ pub fn statistics(report: &Report, files: &[SourceFile]) -> String {
     most.sort_by(|a, b| joules(b).total_cmp(&joules(a)));
     let rows: Vec<Vec<String>> = most
         .into_iter()
-        .take(TOP)
+        .take(MAX_LISTED)
         .map(|finding| {
             let file = &files[finding.span.file.0 as usize];
             let place = format!("{}:{}", file.path, file.position(finding.span.start).line);

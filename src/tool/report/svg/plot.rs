@@ -21,6 +21,13 @@ pub struct Curve {
     pub points: Vec<[f64; 2]>,
 }
 
+impl Curve {
+    /// A curve of these points.
+    pub fn new(class: impl Into<String>, points: impl IntoIterator<Item = [f64; 2]>) -> Curve {
+        Curve { class: class.into(), points: points.into_iter().collect() }
+    }
+}
+
 /// A reference level, drawn if the curves come near it.
 #[derive(Clone, Copy, Debug)]
 pub struct Rule {
@@ -105,7 +112,7 @@ mod tests {
             name: "a <plot>",
             x_title: "time (s)",
             y_title: "share (%)",
-            curves: vec![Curve { class: "j1".into(), points: curve }],
+            curves: vec![Curve::new("j1", curve)],
             rules: vec![Rule { value: 100.0, label: "limit" }],
         };
         plot.svg(Size { width: 600.0, height: 240.0 })

@@ -1,13 +1,14 @@
 //! The saving of a change of movements or waits: the part of the cycle around it is simulated again
 //! and compared.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 
-use super::saving::{Saving, Weighed};
+use super::saving::{Evaluation, SavesNothing, Saving};
+use super::trace::{self, Action, TraceStep, run};
 use crate::arm::dynamics::Load;
 use crate::arm::robot::Model;
-use crate::rapid::ir::movement::{Movement, Output, Wait};
+use crate::rapid::ir::movement::Wait;
 use crate::rapid::text::Span;
 use crate::retime::energy::account::at_rest;
 use crate::retime::energy::moments::Moments;
@@ -18,11 +19,11 @@ use crate::retime::motion::{Options, Step, replay};
 use crate::retime::path::joint_path::{DOF, Joints};
 
 /// Maximum distance of equal joint positions, rad.
-const SAME: f64 = 1e-4;
+const POSITION_TOLERANCE: f64 = 1e-4;
 /// Maximum number of later runs whose start a change may affect.
-const MOST_BEHIND: usize = 3;
+const MAX_RUNS_BEHIND: usize = 3;
 /// Maximum number of executions of a statement for which a saving is computed.
-const MOST_EXECUTIONS: usize = 2_000;
+const MAX_EXECUTIONS: usize = 2_000;
 
 /// One simulated cycle of a program.
 pub struct Cycle {
@@ -45,35 +46,22 @@ impl Cycle {
     pub fn new(model: &Model, simulation: Simulation, account: Account, options: Options) -> Cycle {
         let mut events: BTreeMap<Span, Vec<usize>> = BTreeMap::new();
         let mut concurrent = false;
-        for (index, event) in simulation.events.iter().enumerate() {
-            let mut add = |span: Span| {
-                let places = events.entry(span).or_default();
-                if places.last() != Some(&index) {
-                    places.push(index);
-                }
-            };
-            match &event.what {
-                What::Run(run) => {
-                    for record in &run.moves {
-                        add(record.movement.span);
-                        concurrent |= record.movement.concurrent;
-                    }
-                }
-                What::Wait(wait) => add(wait.wait.span),
-                What::Output(..) | What::Left(_) => {}
+        for step in trace::of_events(&simulation.events) {
+            if let (Action::Move(_) | Action::Wait(..), Some((event, _))) = (&step.what, step.event)
+            {
+                events.entry(step.what.span()).or_default().push(event);
             }
+            concurrent |= step.what.movement().is_some_and(|movement| movement.concurrent);
         }
         let robots = Robots::new(model);
         Cycle { simulation, account, robots, options, events, concurrent }
     }
 
     /// The events of some statements, in order.
-    fn touched(&self, spans: &[Span]) -> Vec<usize> {
+    fn events_of(&self, spans: &[Span]) -> Vec<usize> {
         let places = spans.iter().filter_map(|span| self.events.get(span));
-        let mut touched: Vec<usize> = places.flatten().copied().collect();
-        touched.sort_unstable();
-        touched.dedup();
-        touched
+        let events: BTreeSet<usize> = places.flatten().copied().collect();
+        events.into_iter().collect()
     }
 }
 
@@ -94,8 +82,8 @@ pub struct Difference {
 }
 
 impl Difference {
-    /// The evaluation of its saving.
-    pub fn weighed(&self) -> Weighed {
+    /// Its saving; an error if the interval of the saving includes zero.
+    pub fn saving(&self) -> Result<Saving, SavesNothing> {
         let energy_j = self.saved.energy_j();
         let (low_j, high_j) = if self.plausible_j.is_empty() {
             (energy_j, energy_j)
@@ -104,15 +92,15 @@ impl Difference {
             (low, high)
         };
         if low_j <= 0.0 {
-            return Weighed::Nothing;
+            return Err(SavesNothing);
         }
-        Weighed::Saves(Saving { energy_j, low_j, high_j, time_s: self.time_s })
+        Ok(Saving { energy_j, low_j, high_j, time_s: self.time_s })
     }
 }
 
 /// Evaluates a change of every execution of the statements at `spans`.
-pub fn weigh(model: &Model, cycle: &Cycle, spans: &[Span], change: &Change<'_>) -> Weighed {
-    difference(model, cycle, spans, change).map_or(Weighed::Unknown, |it| it.weighed())
+pub fn evaluate(model: &Model, cycle: &Cycle, spans: &[Span], change: &Change<'_>) -> Evaluation {
+    difference(model, cycle, spans, change).map(|it| it.saving()).transpose()
 }
 
 /// The effect of a change of every execution of the statements at `spans`; `None` if it cannot be
@@ -127,8 +115,8 @@ pub fn difference(
         return None;
     }
     let (parts, mut rests) = replayed(model, cycle, spans, change)?;
-    let (more, time_s) = laid_out(cycle, &cycle.options.inputs, &parts);
-    let (_, alone_s) = laid_out(cycle, &BTreeMap::new(), &parts);
+    let (more, time_s) = saved_time(cycle, &cycle.options.inputs, &parts);
+    let (_, alone_s) = saved_time(cycle, &BTreeMap::new(), &parts);
     rests.extend(more);
     let mut saved = EnergyParts::default();
     for Replayed { range, after, .. } in &parts {
@@ -144,8 +132,8 @@ pub fn difference(
     let plausible_j = match &cycle.robots {
         // A change that costs energy with the nominal robot is not reported anyway.
         Some(robots) if saved.energy_j() > 0.0 => {
-            let sums = sums(model, cycle, &parts, &rests);
-            let changes = robots.changes(model, &sums);
+            let saved_moments = saved_moments(model, cycle, &parts, &rests);
+            let changes = robots.changes(model, &saved_moments);
             changes.iter().map(|change| saved.energy_j() + change.energy_j()).collect()
         }
         _ => Vec::new(),
@@ -154,7 +142,7 @@ pub fn difference(
 }
 
 /// Energy moments of the saving, summed over the replayed parts.
-fn sums(model: &Model, cycle: &Cycle, parts: &[Replayed], rests: &[Rest]) -> Moments {
+fn saved_moments(model: &Model, cycle: &Cycle, parts: &[Replayed], rests: &[Rest]) -> Moments {
     let mut sums = Moments::none(model);
     for Replayed { range, after, .. } in parts {
         for event in &cycle.simulation.events[range.clone()] {
@@ -195,22 +183,22 @@ fn replayed(
     change: &Change<'_>,
 ) -> Option<(Vec<Replayed>, Vec<Rest>)> {
     let simulation = &cycle.simulation;
-    let touched = cycle.touched(spans);
-    if touched.is_empty() || touched.len() > MOST_EXECUTIONS || cycle.concurrent {
+    let changed = cycle.events_of(spans);
+    if changed.is_empty() || changed.len() > MAX_EXECUTIONS || cycle.concurrent {
         return None;
     }
     let (mut replayed, mut rests) = (Vec::new(), Vec::new());
     let mut next = 0;
-    while next < touched.len() {
-        let mut window = window(simulation, touched[next], spans, change);
+    while next < changed.len() {
+        let mut window = window(simulation, changed[next], spans, change);
         next += 1;
-        while next < touched.len() && touched[next] <= *window.end() {
-            let further = self::window(simulation, touched[next], spans, change);
+        while next < changed.len() && changed[next] <= *window.end() {
+            let further = self::window(simulation, changed[next], spans, change);
             window = *window.start()..=*further.end();
             next += 1;
         }
-        let (range, after, rest) = settle_window(model, cycle, window, spans, change)?;
-        while next < touched.len() && touched[next] <= *range.end() {
+        let (range, after, rest) = extended_window(model, cycle, window, spans, change)?;
+        while next < changed.len() && changed[next] <= *range.end() {
             next += 1;
         }
         let behind = rest_behind(simulation, &range, &after, rest);
@@ -229,12 +217,10 @@ fn window(
     spans: &[Span],
     change: &Change<'_>,
 ) -> RangeInclusive<usize> {
-    if let What::Run(run) = &simulation.events[event].what
-        && stops(run, spans, change)
-    {
+    if run(&simulation.events[event]).is_some_and(|run| stops(run, spans, change)) {
         return event..=event;
     }
-    let is_run = |index: &usize| matches!(simulation.events[*index].what, What::Run(_));
+    let is_run = |index: &usize| run(&simulation.events[*index]).is_some();
     let first = (0..=event).rev().find(is_run).unwrap_or(event);
     first..=next_run(simulation, event)
 }
@@ -249,24 +235,21 @@ fn stops(run: &Run, spans: &[Span], change: &Change<'_>) -> bool {
     matches!(changed.last(), Some(Step::Move(movement)) if movement.zone.fine)
 }
 
-/// The last movement before an event.
-fn movement_before(simulation: &Simulation, event: usize) -> Option<&Movement> {
-    simulation.events[..event].iter().rev().find_map(|event| match &event.what {
-        What::Run(run) => run.moves.last().map(|record| &record.movement),
-        _ => None,
-    })
+/// The last run of events.
+fn last_run(events: &[Event]) -> Option<&Run> {
+    events.iter().rev().find_map(run)
 }
 
 /// The next run after an event, or the last event.
 fn next_run(simulation: &Simulation, event: usize) -> usize {
     let last = simulation.events.len() - 1;
     let mut behind = event + 1..=last;
-    behind.find(|i| matches!(simulation.events[*i].what, What::Run(_))).unwrap_or(last)
+    behind.find(|index| run(&simulation.events[*index]).is_some()).unwrap_or(last)
 }
 
 /// Extends the window until the robot ends at the same place as before the change. Returns it with
 /// its replay and the rest (s) that a directly following movement would add.
-fn settle_window(
+fn extended_window(
     model: &Model,
     cycle: &Cycle,
     window: RangeInclusive<usize>,
@@ -275,8 +258,9 @@ fn settle_window(
 ) -> Option<(RangeInclusive<usize>, Simulation, f64)> {
     let simulation = &cycle.simulation;
     let (first, mut last) = window.into_inner();
-    let before = movement_before(simulation, first);
-    for _ in 0..=MOST_BEHIND {
+    let mut runs = simulation.events[..first].iter().rev().filter_map(run);
+    let before = runs.find_map(|run| run.moves.last()).map(|record| &record.movement);
+    for _ in 0..=MAX_RUNS_BEHIND {
         let (start, steps) = steps(cycle, first..=last, spans, change)?;
         let (after, rest) = replay(model, &cycle.options, start, before, steps);
         let sound = after.events.iter().all(|event| match &event.what {
@@ -287,15 +271,11 @@ fn settle_window(
         if !sound {
             return None;
         }
-        let ends = |simulation: &Simulation, upto: usize| {
-            simulation.events[..upto].iter().rev().find_map(|event| match &event.what {
-                What::Run(run) => Some(run.end),
-                _ => None,
-            })
-        };
-        let was = ends(simulation, last + 1)?;
-        let is = ends(&after, after.events.len()).unwrap_or(start);
-        if apart(&was, &is) <= SAME || last + 1 == simulation.events.len() {
+        let was = last_run(&simulation.events[..=last])?.end;
+        let is = last_run(&after.events).map_or(start, |run| run.end);
+        if largest_difference(&was, &is) <= POSITION_TOLERANCE
+            || last + 1 == simulation.events.len()
+        {
             return Some((first..=last, after, rest));
         }
         last = next_run(simulation, last);
@@ -303,7 +283,7 @@ fn settle_window(
     None
 }
 
-fn apart(a: &Joints, b: &Joints) -> f64 {
+fn largest_difference(a: &Joints, b: &Joints) -> f64 {
     (0..DOF).map(|j| (a[j] - b[j]).abs()).fold(0.0, f64::max)
 }
 
@@ -314,53 +294,36 @@ fn steps(
     spans: &[Span],
     change: &Change<'_>,
 ) -> Option<(Joints, Vec<Step>)> {
-    let mut start = None;
+    let events = &cycle.simulation.events[window];
+    let mut runs = events.iter().filter_map(run);
+    if runs.any(|run| !run.start_known || run.problem.is_some()) {
+        return None;
+    }
+    let start = events.iter().find_map(|event| match &event.what {
+        What::Run(run) => Some(run.start),
+        What::Wait(wait) => Some(wait.q),
+        _ => None,
+    });
     let mut steps = Vec::new();
-    // Outputs between fly-by movements precede the run to which they belong.
-    let mut held: Vec<(usize, &Output)> = Vec::new();
-    let output = |(_, output): (usize, &Output)| Step::Output(Box::new(output.clone()));
-    for event in &cycle.simulation.events[window] {
-        match &event.what {
-            What::Run(run) => {
-                if !run.start_known || run.problem.is_some() {
-                    return None;
-                }
-                start.get_or_insert(run.start);
-                for (index, record) in run.moves.iter().enumerate() {
-                    let due = held.iter().take_while(|(position, _)| *position <= index).count();
-                    steps.extend(held.drain(..due).map(output));
-                    let step = Step::Move(Box::new(record.movement.clone()));
-                    if spans.contains(&record.movement.span) {
-                        steps.extend(change(&step));
-                    } else {
-                        steps.push(step);
-                    }
-                }
-            }
-            What::Wait(wait) => {
-                start.get_or_insert(wait.q);
-                steps.extend(held.drain(..).map(output));
-                let comes = wait.basis == WaitBasis::Input;
-                let wait = Wait {
-                    duration: Some(event.duration),
-                    max_time: None,
-                    // Only a wait for an input of stated time changes its length.
-                    signal: wait.wait.signal.clone().filter(|_| comes),
-                    ..wait.wait.clone()
-                };
-                let span = wait.span;
-                let step = Step::Wait(Box::new(wait));
-                if spans.contains(&span) {
-                    steps.extend(change(&step));
-                } else {
-                    steps.push(step);
-                }
-            }
-            What::Output(output, position) => held.push((*position, output)),
-            What::Left(_) => return None,
+    for TraceStep { what, duration, .. } in trace::of_events(events) {
+        let step = match what {
+            Action::Move(movement) => Step::Move(Box::new(movement.clone())),
+            Action::Wait(wait, basis) => Step::Wait(Box::new(Wait {
+                duration: Some(duration),
+                max_time: None,
+                // Only a wait for an input of stated time changes its length.
+                signal: wait.signal.clone().filter(|_| basis == WaitBasis::Input),
+                ..wait.clone()
+            })),
+            Action::Output(output) => Step::Output(Box::new(output.clone())),
+            Action::Left(_) => return None,
+        };
+        if !matches!(step, Step::Output(_)) && spans.contains(&what.span()) {
+            steps.extend(change(&step));
+        } else {
+            steps.push(step);
         }
     }
-    steps.extend(held.into_iter().map(output));
     Some((start?, steps))
 }
 
@@ -373,17 +336,14 @@ fn rest_behind(
     longer_s: f64,
 ) -> Option<Rest> {
     let next = simulation.events[window.end() + 1..].iter().find(|it| !it.is_within_next_run());
-    let moves_on = next.is_some_and(|it| it.duration > 0.0 && matches!(it.what, What::Run(_)));
-    let last = after.events.last().filter(|event| moves_on && event.duration > 0.0);
-    match last.map(|event| &event.what) {
-        Some(What::Run(run)) => Some(Rest { load: run.load.clone(), q: run.end, longer_s }),
-        _ => None,
-    }
+    let moves_on = next.is_some_and(|it| it.duration > 0.0 && run(it).is_some());
+    let last = after.events.last().filter(|event| moves_on && event.duration > 0.0)?;
+    run(last).map(|run| Rest { load: run.load.clone(), q: run.end, longer_s })
 }
 
 /// The additional rests in waits for inputs of stated time, and the saved time of the cycle: such a
 /// wait absorbs an earlier delay.
-fn laid_out(
+fn saved_time(
     cycle: &Cycle,
     inputs: &BTreeMap<String, f64>,
     replayed: &[Replayed],
@@ -403,11 +363,11 @@ fn laid_out(
     let mut windows = replayed.iter().peekable();
     while index < simulation.events.len() {
         if let Some(part) = windows.next_if(|part| *part.range.start() == index) {
-            more.extend(part.after.events.iter().filter_map(|event| clock.passes(event, true)));
+            more.extend(part.after.events.iter().filter_map(|event| clock.advance(event, true)));
             clock.time += part.longer_s;
             index = part.range.end() + 1;
         } else {
-            more.extend(clock.passes(&simulation.events[index], false));
+            more.extend(clock.advance(&simulation.events[index], false));
             index += 1;
         }
     }
@@ -422,7 +382,7 @@ struct Clock<'c> {
 
 impl Clock<'_> {
     /// Advances by an event; returns the additional rest of a wait.
-    fn passes(&mut self, event: &Event, replayed: bool) -> Option<Rest> {
+    fn advance(&mut self, event: &Event, replayed: bool) -> Option<Rest> {
         let mut duration = event.duration;
         let mut more = None;
         if let What::Wait(wait) = &event.what
