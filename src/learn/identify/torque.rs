@@ -132,9 +132,13 @@ fn of_phases(
             ));
             by_segments(&lengths, &signs)
         };
-        current.iter_mut().for_each(|value| *value *= scale);
+        for value in &mut current {
+            *value *= scale;
+        }
         if rough.is_reversed(joint, &current) {
-            current.iter_mut().for_each(|value| *value = -*value);
+            for value in &mut current {
+                *value = -*value;
+            }
         }
         tau.push(current);
     }

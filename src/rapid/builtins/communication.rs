@@ -22,7 +22,7 @@ const SOCKET_RECEIVE_FROM: &str =
     "Socket \\Str \\RawData \\Data \\NoRecBytes RemoteAddress RemotePort \\Time";
 
 pub(super) const INSTRUCTIONS: &[Instruction] = &[
-    plain("ClearRawBytes", "RawData \\FromIndex"),
+    writing("ClearRawBytes", "RawData \\FromIndex"),
     plain("Close", "IODevice"),
     plain("CloseDir", "Dev"),
     writing("CopyRawBytes", "FromRawData FromIndex ToRawData ToIndex \\NoOfBytes"),
@@ -48,11 +48,11 @@ pub(super) const INSTRUCTIONS: &[Instruction] = &[
     outside("SocketAccept", "Socket ClientSocket \\ClientAddress \\Time"),
     plain("SocketBind", "Socket LocalAddress LocalPort"),
     plain("SocketClose", "Socket"),
-    plain("SocketConnect", "Socket Address Port \\Time"),
+    outside("SocketConnect", "Socket Address Port \\Time"),
     writing("SocketCreate", "Socket \\UDP"),
     plain("SocketListen", "Socket"),
     outside("SocketReceive", SOCKET_RECEIVE),
-    writing("SocketReceiveFrom", SOCKET_RECEIVE_FROM),
+    outside("SocketReceiveFrom", SOCKET_RECEIVE_FROM),
     plain("SocketSend", "Socket \\Str \\RawData \\Data \\NoOfBytes"),
     plain("SocketSendTo", "Socket RemoteAddress RemotePort \\Str \\RawData \\Data \\NoOfBytes"),
     plain("TPErase", "").on_the_fly(),

@@ -1,6 +1,6 @@
 //! Properties of a built-in function.
 
-use super::parameter::positional;
+use super::parameter::{ArgumentPlace, is_written, parameters, positional};
 use super::types::SignalKind;
 
 /// What the value of a function depends on.
@@ -64,15 +64,21 @@ impl Function {
         positional(self.arguments).next()?.signal()
     }
 
+    /// Whether it writes to the argument at this place.
+    pub fn writes_to(&self, place: ArgumentPlace<'_>) -> bool {
+        is_written(self.arguments, place)
+    }
+
     /// Whether it is known not to write to its arguments.
     pub fn only_reads(&self) -> bool {
-        matches!(
+        let is_calculated = matches!(
             self.source,
             Source::Arguments
                 | Source::Signal
                 | Source::Position
                 | Source::Kinematics
                 | Source::Mounting
-        )
+        );
+        is_calculated && !parameters(self.arguments).any(|parameter| parameter.written)
     }
 }

@@ -1,6 +1,6 @@
 //! Properties of a built-in instruction.
 
-use super::parameter::positional;
+use super::parameter::{ArgumentPlace, is_written, parameters, positional};
 use super::types::SignalKind;
 
 /// The form of a movement instruction: which positional arguments it takes.
@@ -54,15 +54,6 @@ pub struct MoveSignature {
     pub zone: bool,
 }
 
-/// The single argument that an instruction writes to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Written {
-    /// Its place among the positional arguments.
-    pub position: usize,
-    /// Its name, as RAPID writes it.
-    pub name: &'static str,
-}
-
 /// The arguments that an instruction may write to, if none is marked in its parameter list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Writes {
@@ -84,6 +75,8 @@ pub enum Wait {
     Output,
     /// A condition.
     Condition,
+    /// The robot's standstill.
+    Standstill,
     /// The operator.
     Operator,
     /// Another event outside the program.
@@ -276,11 +269,16 @@ impl Instruction {
         })
     }
 
-    /// The argument to which it writes, if one is marked.
-    pub fn written(&self) -> Option<Written> {
-        let mut places = positional(self.arguments).enumerate();
-        let (position, parameter) = places.find(|(_, parameter)| parameter.written)?;
-        Some(Written { position, name: parameter.name })
+    fn marks_written(&self) -> bool {
+        parameters(self.arguments).any(|parameter| parameter.written)
+    }
+
+    /// Whether it may write to the argument at this place.
+    pub fn may_write_to(&self, place: ArgumentPlace<'_>) -> bool {
+        if self.marks_written() {
+            return is_written(self.arguments, place);
+        }
+        self.writes != Writes::Nothing
     }
 
     /// Whether its effect is known.
@@ -295,12 +293,12 @@ impl Instruction {
 
     /// Whether it is known to write to arguments.
     pub fn is_writing(&self) -> bool {
-        self.writes == Writes::Any || self.written().is_some()
+        self.writes == Writes::Any || self.marks_written()
     }
 
     /// Whether it may write to arguments.
     pub fn may_write(&self) -> bool {
-        self.writes != Writes::Nothing || self.written().is_some()
+        self.writes != Writes::Nothing || self.marks_written()
     }
 
     /// Whether it counts in its first argument.
@@ -318,6 +316,16 @@ impl Instruction {
         self.effect == Effect::FindsByName
     }
 
+    /// Whether it waits.
+    pub fn waits(&self) -> bool {
+        matches!(self.effect, Effect::Wait(_))
+    }
+
+    /// Whether it waits for a time.
+    pub fn waits_for_time(&self) -> bool {
+        self.effect == Effect::Wait(Wait::Time)
+    }
+
     /// Whether it waits for an input.
     pub fn waits_for_input(&self) -> bool {
         self.effect == Effect::Wait(Wait::Input)
@@ -326,10 +334,5 @@ impl Instruction {
     /// Whether it waits for the operator.
     pub fn asks_operator(&self) -> bool {
         matches!(self.effect, Effect::Stop | Effect::Wait(Wait::Operator))
-    }
-
-    /// Whether it waits for the operator or another outside event, for an unknown time.
-    pub fn waits_outside(&self) -> bool {
-        matches!(self.effect, Effect::Wait(Wait::Operator | Wait::Outside))
     }
 }

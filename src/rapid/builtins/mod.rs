@@ -27,6 +27,7 @@ pub use function::{Function, Source};
 pub(in crate::rapid) use functions::FUNCTIONS;
 pub use index::{function, instruction, is_movement, is_of_move_family, may_write, movement};
 pub use instruction::{
-    Count, Effect, Instruction, Level, MoveForm, MoveKind, MoveSignature, Setting, Wait, Written,
+    Count, Effect, Instruction, Level, MoveForm, MoveKind, MoveSignature, Setting, Wait,
 };
+pub use parameter::ArgumentPlace;
 pub use types::{DataType, SignalKind, data_type};

@@ -5,6 +5,15 @@
 
 use super::types::{SignalKind, data_type};
 
+/// The place of an argument in a call.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ArgumentPlace<'a> {
+    /// Its number among the positional arguments, from 0.
+    Position(usize),
+    /// Its name.
+    Name(&'a str),
+}
+
 /// A parameter of an instruction or a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Parameter {
@@ -33,6 +42,16 @@ pub(super) fn parameters(list: &'static str) -> impl Iterator<Item = Parameter> 
         let name = name.trim_start_matches('\\').trim_end_matches('=');
         Parameter { name, optional, written, type_name }
     })
+}
+
+/// Whether a list marks the argument at this place as written to.
+pub(super) fn is_written(list: &'static str, place: ArgumentPlace<'_>) -> bool {
+    match place {
+        ArgumentPlace::Position(n) => positional(list).nth(n).is_some_and(|p| p.written),
+        ArgumentPlace::Name(name) => {
+            parameters(list).any(|p| p.written && p.name.eq_ignore_ascii_case(name))
+        }
+    }
 }
 
 /// The parameters that are not optional.

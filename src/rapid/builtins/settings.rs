@@ -1,6 +1,7 @@
 //! Instructions that change how movements run, and that stop or start motion.
 
-use super::instruction::Effect::{Ends, Unmodelled};
+use super::instruction::Effect::{Ends, Unmodelled, Wait};
+use super::instruction::Wait::Outside;
 use super::instruction::{Instruction, Setting, plain, setting, unknown, writing};
 
 /// A setting that is not simulated.
@@ -40,6 +41,7 @@ pub(super) const INSTRUCTIONS: &[Instruction] = &[
     setting("PDispSet", "DispFrame", Setting::PDispSet),
     plain("ResetAxisDistance", "MechUnit AxisNo"),
     plain("RestoPath", ""),
+    setting("SetSysData", "SourceObject \\ObjectName", Setting::GripLoad),
     setting("SingArea", "\\Wrist \\LockAxis4 \\Arm \\Base \\Off", Setting::SingArea).on_the_fly(),
     unmodelled("SoftAct", "\\MechUnit Axis Softness \\Ramp"),
     plain("SoftDeact", "\\Ramp").effect(Ends(&["softact"])).changing_motion(),
@@ -51,8 +53,8 @@ pub(super) const INSTRUCTIONS: &[Instruction] = &[
     plain("StopMove", "\\Quick \\AllMotionTasks"),
     plain("StopMoveReset", "\\AllMotionTasks"),
     plain("StorePath", "\\KeepSync"),
-    plain("SyncMoveOff", "SyncID \\TimeOut"),
-    plain("SyncMoveOn", "SyncID TaskList \\TimeOut"),
+    plain("SyncMoveOff", "SyncID \\TimeOut").effect(Wait(Outside)),
+    plain("SyncMoveOn", "SyncID TaskList \\TimeOut").effect(Wait(Outside)),
     plain("SyncMoveResume", ""),
     plain("SyncMoveSuspend", ""),
     plain("SyncMoveUndo", ""),

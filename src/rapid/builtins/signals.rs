@@ -17,8 +17,10 @@ const WAIT_AI: &str =
     "Signal:signalai \\LT \\GT Value \\MaxTime \\ValueAtTimeout \\TimeFlag \\Visualize";
 const WAIT_AO: &str =
     "Signal:signalao \\LT \\GT Value \\MaxTime \\ValueAtTimeout \\TimeFlag \\Visualize";
-const WAIT_GI: &str = "Signal:signalgi \\NOTEQ \\LT \\GT Value \\MaxTime \\TimeFlag";
-const WAIT_GO: &str = "Signal:signalgo \\NOTEQ \\LT \\GT Value \\MaxTime \\TimeFlag";
+const WAIT_GI: &str =
+    "Signal:signalgi \\NOTEQ \\LT \\GT Value \\MaxTime \\ValueAtTimeout \\TimeFlag";
+const WAIT_GO: &str =
+    "Signal:signalgo \\NOTEQ \\LT \\GT Value \\MaxTime \\ValueAtTimeout \\TimeFlag";
 const I_ANALOG_IN: &str = "\\Single \\SingleSafe Signal:signalai Condition HighValue LowValue \
     DeltaValue \\DPos \\DNeg Interrupt";
 const I_ANALOG_OUT: &str = "\\Single \\SingleSafe Signal:signalao Condition HighValue LowValue \
@@ -48,7 +50,7 @@ pub(super) const INSTRUCTIONS: &[Instruction] = &[
     output("SetGO", "\\SDelay Signal:signalgo Value", Level::Given),
     writing(
         "TriggCheckIO",
-        "TriggData Distance \\Start \\Time Signal Relation CheckValue Interrupt",
+        "TriggData Distance \\Start \\Time Signal Relation CheckValue \\StopMove Interrupt",
     ),
     writing("TriggEquip", "TriggData Distance \\Start EquipLag \\DOp \\GOp \\AOp SetValue"),
     writing("TriggInt", "TriggData Distance \\Start \\Time Interrupt"),
@@ -61,13 +63,13 @@ pub(super) const INSTRUCTIONS: &[Instruction] = &[
     wait("WaitDO", "Signal:signaldo Value \\MaxTime \\TimeFlag \\Visualize", Wait::Output),
     wait("WaitGI", WAIT_GI, Wait::Input),
     wait("WaitGO", WAIT_GO, Wait::Output),
-    writing("WaitLoad", "\\UnloadPath \\UnloadFile LoadNo \\CheckRef"),
-    plain("WaitRob", "\\InPos \\ZeroSpeed"),
+    writing("WaitLoad", "\\UnloadPath \\UnloadFile LoadNo \\CheckRef").effect(Waits(Wait::Outside)),
+    wait("WaitRob", "\\InPos \\ZeroSpeed", Wait::Standstill),
     writing("WaitSensor", "MechUnit \\RelDist \\PredTime \\MaxTime \\TimeFlag")
         .effect(Waits(Wait::Outside)),
     wait("WaitSync", "SyncID", Wait::Outside),
     wait("WaitSyncTask", "\\InPos SyncID TaskList \\TimeOut", Wait::Outside),
-    wait("WaitTestAndSet", "Object", Wait::Outside),
+    wait("WaitTestAndSet", "Object=", Wait::Outside),
     wait("WaitTime", "\\InPos Time", Wait::Time),
     wait("WaitUntil", "\\InPos Cond \\MaxTime \\TimeFlag \\PollRate \\Visualize", Wait::Condition),
     wait("WaitWObj", "WObj \\RelDist \\PredTime \\MaxTime \\TimeFlag", Wait::Outside),

@@ -5,11 +5,12 @@ use std::collections::btree_map::Entry;
 use std::sync::Arc;
 
 use super::hir::{
-    ArgKind, Call, Callee, Data, DataKind, Expr, ExprKind, Ident, Module, ParamMode, Routine,
+    Arg, Call, Callee, Data, DataKind, Expr, ExprKind, Ident, Module, ParamMode, Routine,
     RoutineKind, Scope, Stmt, StmtKind, TypeDefKind,
 };
 use super::user;
-use crate::rapid::builtins::{self, DataType, Instruction};
+use super::walk::placed;
+use crate::rapid::builtins::{self, ArgumentPlace, DataType};
 use crate::rapid::text::Span;
 
 /// A data object at module level.
@@ -244,52 +245,57 @@ impl RoutineScope<'_> {
             StmtKind::Call(call) => self.call(call, found),
             _ => {}
         }
+        for (name, args) in stmt.kind.exprs().into_iter().flat_map(Expr::calls) {
+            let function = builtins::function(&name.key);
+            self.arguments(Some(name), args, found, |place| match function {
+                Some(function) => function.writes_to(place).then_some(Writer::Program),
+                None => Some(Writer::UnknownCall(name.text.as_str().into())),
+            });
+        }
     }
 
     fn call(&self, call: &Call, found: &mut Written) {
-        let (text, callee, instruction) = match &call.callee {
-            Callee::Name(name) => match self.program.resolve(self.id.module, &name.key) {
-                None if !builtins::may_write(&name.key) => return,
-                None => (name.text.as_str(), None, builtins::instruction(&name.key)),
-                callee => (name.text.as_str(), callee, None),
-            },
-            Callee::Late(_) => ("%…%", None, None),
+        let (text, name) = match &call.callee {
+            Callee::Name(name) => (name.text.as_str(), Some(name)),
+            Callee::Late(_) => ("%…%", None),
         };
-        // The effect of an undeclared routine on its arguments.
-        let outside = match instruction {
-            Some(instruction) if instruction.is_writing() => Writer::Program,
-            _ => Writer::UnknownCall(text.into()),
-        };
-        let only = instruction.and_then(Instruction::written);
-        let mut position = 0;
-        for arg in &call.args {
-            let (expr, name) = match &arg.kind {
-                ArgKind::Positional(expr) => (expr, None),
-                ArgKind::Named(name, expr) | ArgKind::Optional(name, Some(expr)) => {
-                    (expr, Some(&name.key))
-                }
-                ArgKind::Optional(_, None) | ArgKind::Conditional(..) => continue,
-            };
+        let instruction = name.and_then(|name| builtins::instruction(&name.key));
+        self.arguments(name, &call.args, found, |place| match instruction {
+            Some(instruction) if !instruction.may_write_to(place) => None,
+            Some(instruction) if instruction.is_writing() => Some(Writer::Program),
+            _ => Some(Writer::UnknownCall(text.into())),
+        });
+    }
+
+    /// The arguments of a call; `outside` is what writes to an argument if the program does not declare
+    /// the routine.
+    fn arguments(
+        &self,
+        name: Option<&Ident>,
+        args: &[Arg],
+        found: &mut Written,
+        outside: impl Fn(ArgumentPlace<'_>) -> Option<Writer>,
+    ) {
+        let callee = name.and_then(|name| self.program.resolve(self.id.module, &name.key));
+        for (place, expr) in placed(args) {
             let writer = if let Some(Symbol::Routine(id)) = callee {
                 let params = &self.program.routine(id).params;
-                let index = if let Some(key) = name {
-                    params.iter().position(|p| p.name.key == *key)
-                } else {
-                    let required = params.iter().enumerate().filter(|(_, p)| !p.optional);
-                    required.map(|(i, _)| i).nth(position)
+                let index = match place {
+                    ArgumentPlace::Name(key) => params.iter().position(|p| p.name.key == key),
+                    ArgumentPlace::Position(n) => {
+                        let required = params.iter().enumerate().filter(|(_, p)| !p.optional);
+                        required.map(|(i, _)| i).nth(n)
+                    }
                 };
                 index.and_then(|index| found.params.get(&(id, index)).cloned())
+            } else if let (Some(name), Some(_)) = (name, callee) {
+                Some(Writer::UnknownCall(name.text.as_str().into()))
             } else {
-                let is_it = only.is_none_or(|only| match name {
-                    Some(name) => name.eq_ignore_ascii_case(only.name),
-                    None => position == only.position,
-                });
-                is_it.then(|| outside.clone())
+                outside(place)
             };
             if let Some(writer) = writer {
                 self.target(expr, &writer, found);
             }
-            position += usize::from(name.is_none());
         }
     }
 

@@ -1,5 +1,7 @@
 //! Walks over the tree of a program.
 
+use crate::rapid::builtins::ArgumentPlace;
+
 use super::hir::{Arg, ArgKind, Block, Callee, Expr, ExprKind, Ident, Routine, Stmt, StmtKind};
 
 impl Routine {
@@ -68,6 +70,24 @@ impl StmtKind {
     }
 }
 
+/// The arguments of a call with a value, each with its place.
+pub fn placed(args: &[Arg]) -> impl Iterator<Item = (ArgumentPlace<'_>, &Expr)> {
+    let mut position = 0;
+    args.iter().filter_map(move |arg| {
+        let expr = arg.value()?;
+        let place = match &arg.kind {
+            ArgKind::Positional(_) => {
+                position += 1;
+                ArgumentPlace::Position(position - 1)
+            }
+            ArgKind::Named(name, _)
+            | ArgKind::Optional(name, _)
+            | ArgKind::Conditional(name, _) => ArgumentPlace::Name(&name.key),
+        };
+        Some((place, expr))
+    })
+}
+
 impl Arg {
     /// Its value, if it has no name.
     pub fn positional(&self) -> Option<&Expr> {
@@ -90,6 +110,19 @@ impl Arg {
 }
 
 impl Expr {
+    /// The function calls in the expression, inner ones included.
+    pub fn calls(&self) -> Vec<(&Ident, &[Arg])> {
+        let mut calls = Vec::new();
+        let mut open = vec![self];
+        while let Some(expr) = open.pop() {
+            if let ExprKind::Call(name, args) = &expr.kind {
+                calls.push((name, args.as_slice()));
+            }
+            open.extend(expr.parts());
+        }
+        calls
+    }
+
     /// The expressions directly inside the expression.
     pub fn parts(&self) -> Vec<&Expr> {
         match &self.kind {

@@ -78,12 +78,11 @@ pub struct MotionLimits {
 
 /// The limits of the robot; without accelerations in its file they follow from [`TO_FULL_SPEED_S`].
 pub fn motion_limits(model: &Model) -> MotionLimits {
-    let acceleration = match &model.limits.acceleration {
-        Some(list) => joint_limits(Some(list)),
-        None => {
-            let speed = joint_limits(model.limits.velocity.as_ref());
-            std::array::from_fn(|j| speed[j] / TO_FULL_SPEED_S[j])
-        }
+    let acceleration = if let Some(list) = &model.limits.acceleration {
+        joint_limits(Some(list))
+    } else {
+        let speed = joint_limits(model.limits.velocity.as_ref());
+        std::array::from_fn(|j| speed[j] / TO_FULL_SPEED_S[j])
     };
     MotionLimits { acceleration, torque: joint_limits(model.torque_bounds()) }
 }

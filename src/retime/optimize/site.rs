@@ -7,7 +7,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::reason::Reason;
-use crate::rapid::builtins::{MoveForm, is_movement};
+use crate::rapid::builtins::{Instruction, MoveForm, instruction, is_movement};
 use crate::rapid::ir::hir::{Arg, ArgKind, Block, Callee, Expr, ExprKind, Stmt, StmtKind};
 use crate::rapid::ir::movement::{Argument, Movement, Settings};
 use crate::rapid::ir::program::Program;
@@ -348,7 +348,8 @@ impl Places {
 fn is_wait(stmt: &Stmt) -> bool {
     let StmtKind::Call(call) = &stmt.kind else { return false };
     let is_zero = |arg: &Arg| matches!(&arg.kind, ArgKind::Positional(Expr { kind: ExprKind::Num(x), .. }) if *x == 0.0);
-    matches!(&call.callee, Callee::Name(name) if name.key == "waittime")
+    matches!(&call.callee, Callee::Name(name)
+        if instruction(&name.key).is_some_and(Instruction::waits_for_time))
         && !call.args.iter().any(is_zero)
 }
 

@@ -227,7 +227,8 @@ fn table(grades: &Grades) -> String {
         grades.confusion.values().flat_map(|row| row.keys().copied()).collect();
     columns.sort_unstable();
     columns.dedup();
-    let names: String = columns.iter().map(|name| format!("{name:>16}")).collect();
+    let title = |name: &&str| format!("{name:>16}");
+    let names: String = columns.iter().map(title).collect();
     let _ = writeln!(text, "{:<22}{names}", "truth");
     for (truth, row) in &grades.confusion {
         let count = |column: &&str| format!("{:>16}", row.get(column).copied().unwrap_or(0));

@@ -30,12 +30,13 @@ impl Measure {
     /// Adds a state without load at the flange.
     pub(super) fn add(&mut self, model: &Model, data: &mut Data, state: &JointState) {
         let limits = &model.limits;
-        self.velocity = self.velocity.max(largest_share(&state.qd, &limits.velocity));
-        self.acceleration = self.acceleration.max(largest_share(&state.qdd, &limits.acceleration));
+        self.velocity = self.velocity.max(largest_share(&state.qd, limits.velocity.as_ref()));
+        self.acceleration =
+            self.acceleration.max(largest_share(&state.qdd, limits.acceleration.as_ref()));
         self.out_of_range |= limits_ok(model, &state.q).is_err();
         if model.has_dynamics() {
             let tau = power(model, data, &Load::none(), state).tau;
-            self.torque = self.torque.max(largest_share(&tau, &limits.torque));
+            self.torque = self.torque.max(largest_share(&tau, limits.torque.as_ref()));
         }
         if let Some(limit) = limits.tcp_speed {
             let rate = jacobian(model, &state.q, &Isometry3::identity()) * Vector6::from(state.qd);

@@ -155,9 +155,7 @@ impl<'p> Flow<'p> {
                 }
                 if instruction.is_some_and(Instruction::sets_output) {
                     Class::Output
-                } else if name.key.starts_with("wait")
-                    || instruction.is_some_and(Instruction::waits_outside)
-                {
+                } else if instruction.is_some_and(Instruction::waits) {
                     Class::Wait
                 } else {
                     let on_the_fly = instruction.is_some_and(|found| found.on_the_fly);

@@ -58,7 +58,7 @@ impl<'a> Simulated<'a> {
                         duration: record.duration,
                         energy_j,
                         kind: StepKind::Move(record),
-                    }))
+                    }));
                 }
                 What::Wait(record) => steps.push(Step {
                     span: record.wait.span,

@@ -8,7 +8,7 @@ use super::files::Source;
 use super::interrupts::written_by_interrupts;
 use super::settings::{Form, Settings};
 use super::statements::calls;
-use crate::rapid::builtins::{is_controller_specific, is_movement};
+use crate::rapid::builtins::{Instruction, instruction, is_controller_specific, is_movement};
 use crate::rapid::ir::hir::{Arg, ArgKind, DataKind, Expr, ExprKind, Scope, UnaryOp};
 use crate::rapid::ir::movement::Argument;
 use crate::rapid::ir::program::{DataId, Program, RoutineId};
@@ -47,7 +47,9 @@ impl<'p> Guards<'p> {
                 let id = RoutineId { module: m, index };
                 for block in routine.blocks() {
                     for (_, name, call) in calls(block) {
-                        if is_movement(&name.key) || name.key == "waittime" {
+                        if is_movement(&name.key)
+                            || instruction(&name.key).is_some_and(Instruction::waits_for_time)
+                        {
                             let args = call.args.iter();
                             let own = args.filter(|a| !matches!(a.kind, ArgKind::Conditional(..)));
                             let own = own.filter_map(Arg::value);

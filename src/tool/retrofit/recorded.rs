@@ -3,8 +3,9 @@
 
 use super::files::Source;
 use super::guards::one_line;
-use crate::rapid::ir::hir::{Arg, Block, Call, Callee, ExprKind, Routine, Stmt, StmtKind};
-use crate::rapid::ir::program::Program;
+use crate::rapid::builtins::{self, Effect, Setting, instruction};
+use crate::rapid::ir::hir::{Arg, Block, Call, Callee, Expr, Routine, Stmt, StmtKind};
+use crate::rapid::ir::program::{Program, Symbol};
 use crate::rapid::text::{Charset, Edit, Span, charset};
 use crate::tool::emit::{Names, Recorded};
 
@@ -103,32 +104,42 @@ impl StateChangeCollector<'_> {
         if let StmtKind::Call(call) = &stmt.kind
             && let Callee::Name(name) = &call.callee
             && self.program.resolve(self.module, &name.key).is_none()
-            && let Some(change) = change(&name.key, call)
         {
-            self.changes.push((Place { end: stmt.span, compact }, change));
+            for change in changes(self.program, self.module, &name.key, call) {
+                self.changes.push((Place { end: stmt.span, compact }, change));
+            }
         }
     }
 }
 
-/// The effect of an instruction.
-fn change(key: &str, call: &Call) -> Option<Change> {
-    let first = call.args.first().and_then(Arg::value);
-    let names = |word: &str| {
-        first.is_some_and(|expr| matches!(&expr.kind, ExprKind::Ref(name) if name.key == word))
-    };
-    Some(match key {
-        "gripload" => Change::Load(first?.span),
-        "softact" => Change::Switch("SoftAct", true),
-        "softdeact" => Change::Switch("SoftAct", false),
-        "tuneservo" => Change::Switch("TuneServo", true),
-        "tunereset" => Change::Switch("TuneServo", false),
-        "corrcon" => Change::Switch("CorrCon", true),
-        "corrdiscon" | "corrclear" => Change::Switch("CorrCon", false),
-        "pathrecstart" => Change::Switch("PathRecStart", true),
-        "pathrecstop" => Change::Switch("PathRecStart", false),
-        "motionprocessmodeset" => {
-            Change::Switch("MotionProcessModeSet", !names("optimal_cycle_time_mode"))
+/// The effects of an instruction of `module`.
+fn changes(program: &Program, module: usize, key: &str, call: &Call) -> Vec<Change> {
+    let Some(instruction) = instruction(key) else { return Vec::new() };
+    let first = call.args.iter().find_map(Arg::positional);
+    let name = first.and_then(Expr::base).map(|name| name.key.as_str());
+    match instruction.effect {
+        Effect::Setting(Setting::GripLoad) => {
+            let data = match name.and_then(|name| program.resolve(module, name)) {
+                Some(Symbol::Data(id)) => Some(program.data(id).type_name.key.as_str()),
+                _ => None,
+            };
+            match (instruction.name, data, first) {
+                ("GripLoad", _, Some(load)) | (_, Some("loaddata"), Some(load)) => {
+                    vec![Change::Load(load.span)]
+                }
+                (_, Some("tooldata" | "wobjdata"), _) => Vec::new(),
+                _ => vec![Change::Switch(instruction.name, true)],
+            }
         }
-        _ => return None,
-    })
+        Effect::Setting(Setting::MotionProcessMode) => {
+            let is_on = name != Some("optimal_cycle_time_mode");
+            vec![Change::Switch(instruction.name, is_on)]
+        }
+        Effect::Unmodelled => vec![Change::Switch(instruction.name, true)],
+        Effect::Ends(ended) => {
+            let ended = ended.iter().filter_map(|key| builtins::instruction(key));
+            ended.map(|ended| Change::Switch(ended.name, false)).collect()
+        }
+        _ => Vec::new(),
+    }
 }

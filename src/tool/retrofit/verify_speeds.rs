@@ -57,8 +57,8 @@ fn keeps_ceilings(was: &Run, now: &Run, freedom: &Freedom) -> bool {
 }
 
 /// The largest share of a limit that a joint uses; 0 without limits.
-pub(in crate::tool) fn largest_share(values: &[f64], limits: &Option<Vec<f64>>) -> f64 {
-    let limits = limits.iter().flatten();
+pub(in crate::tool) fn largest_share(values: &[f64], limits: Option<&Vec<f64>>) -> f64 {
+    let limits = limits.into_iter().flatten();
     values.iter().zip(limits).map(|(x, limit)| x.abs() / limit).fold(0.0, f64::max)
 }
 
@@ -72,9 +72,9 @@ fn shares(model: &Model, run: &Run) -> Check {
         let state = run.at(run.duration() * i as f64 / count as f64);
         let tau = power(model, &mut data, &run.load, &state).tau;
         check = check.max(&Check {
-            velocity: largest_share(&state.qd, &limits.velocity),
-            acceleration: largest_share(&state.qdd, &limits.acceleration),
-            torque: largest_share(&tau, &limits.torque),
+            velocity: largest_share(&state.qd, limits.velocity.as_ref()),
+            acceleration: largest_share(&state.qdd, limits.acceleration.as_ref()),
+            torque: largest_share(&tau, limits.torque.as_ref()),
             ..Check::none()
         });
     }

@@ -11,6 +11,15 @@ use crate::rapid::ir::program::{RoutineId, Symbol};
 use crate::rapid::ir::value::{Datum, Dependence, Origin};
 use crate::rapid::text::Span;
 
+/// A part of data that a routine has by reference.
+struct Part {
+    parameter: CellId,
+    whole: CellId,
+    indices: Option<Vec<usize>>,
+    /// The value at the call.
+    before: Datum,
+}
+
 impl Executor<'_> {
     /// A call statement: a routine of the program or a RAPID instruction.
     pub(super) fn call_statement(&mut self, stmt: &Stmt, call: &Call) -> Flow {
@@ -58,20 +67,16 @@ impl Executor<'_> {
         let mut required = params.iter().filter(|param| !param.optional);
         let mut names = Vec::new();
         let mut present = Vec::new();
+        let mut parts = Vec::new();
         for arg in args {
             let (param, expr) = match &arg.kind {
                 ArgKind::Positional(expr) => (required.next(), Some(expr)),
                 ArgKind::Named(name, expr) => (named(name), Some(expr)),
                 ArgKind::Optional(name, expr) => (named(name), expr.as_ref()),
                 ArgKind::Conditional(name, outer) => {
-                    let Some(outer) = self.given(outer) else { continue };
-                    if let Some(param) = named(name) {
-                        present.push(param.name.key.clone());
-                        if let Some(cell) = self.cell_of(outer) {
-                            names.push((param.name.key.clone(), cell));
-                        }
-                    }
-                    continue;
+                    let Some(own) = self.given(outer) else { continue };
+                    let has_value = self.cell_of(own).is_some();
+                    (named(name), has_value.then_some(outer))
                 }
             };
             let Some(param) = param else {
@@ -82,9 +87,45 @@ impl Executor<'_> {
             if let Some(expr) = expr {
                 let cell = self.bind(param, expr);
                 names.push((param.name.key.clone(), cell));
+                if param.mode != ParamMode::In {
+                    parts.extend(self.part_by_reference(expr, cell));
+                }
             }
         }
-        self.enter(id, names, present, Some(at))
+        let flow = self.enter(id, names, present, Some(at));
+        for (part, expr) in parts {
+            self.write_back(&part, expr);
+        }
+        flow
+    }
+
+    /// A component or an element that is passed by reference, `cell` being that of the parameter.
+    fn part_by_reference<'e>(&mut self, expr: &'e Expr, cell: CellId) -> Option<(Part, &'e Expr)> {
+        if matches!(expr.kind, ExprKind::Ref(_)) {
+            return None;
+        }
+        let whole = self.cell_of(expr.base()?).filter(|whole| !self.cells[*whole].read_only)?;
+        let type_key = self.cells[whole].value.type_key.clone();
+        let indices = self.place(expr, &type_key).map(|(indices, _)| indices);
+        let before = self.cells[cell].value.datum.clone();
+        Some((Part { parameter: cell, whole, indices, before }, expr))
+    }
+
+    /// Stores what the routine wrote to the parameter of a part.
+    fn write_back(&mut self, part: &Part, expr: &Expr) {
+        let parameter = &self.cells[part.parameter];
+        if parameter.value.datum == part.before {
+            return;
+        }
+        let (datum, history) = (parameter.value.datum.clone(), parameter.history.clone());
+        let input = parameter.input.clone();
+        self.write_at(part.whole, part.indices.as_deref(), expr, datum);
+        let whole = &mut self.cells[part.whole];
+        whole.history.join(&history);
+        if input.is_some() {
+            whole.input = input;
+        }
+        self.record_change(Some(part.whole));
     }
 
     /// The cell of a parameter: that of the argument if passed by reference, else a new one.

@@ -288,16 +288,7 @@ impl Executor<'_> {
         if self.cells[cell].read_only {
             return self.unresolved(name.span, format!("'{}' is read only", name.text));
         }
-        let type_key = self.cells[cell].value.type_key.clone();
-        let place = self.place(target, &type_key);
-        let slot = &mut self.cells[cell].value.datum;
-        let changed = if let Some((indices, _)) = place {
-            store(slot, &indices, value.datum)
-        } else {
-            let reason = format!("it was written at a place in '{}' not known", name.text);
-            *slot = Datum::unknown(reason, target.span);
-            true
-        };
+        let changed = self.write(cell, target, value.datum);
         self.cells[cell].input = input;
         if matches!(target.kind, ExprKind::Ref(_)) {
             self.cells[cell].history = history;
@@ -339,8 +330,34 @@ impl Executor<'_> {
         history
     }
 
+    /// Writes the part of a cell that `target` names; true if this changed it. A part that is not known
+    /// makes all of it unknown.
+    pub(super) fn write(&mut self, cell: CellId, target: &Expr, datum: Datum) -> bool {
+        let type_key = self.cells[cell].value.type_key.clone();
+        let place = self.place(target, &type_key).map(|(indices, _)| indices);
+        self.write_at(cell, place.as_deref(), target, datum)
+    }
+
+    /// The same at these component indices.
+    pub(super) fn write_at(
+        &mut self,
+        cell: CellId,
+        place: Option<&[usize]>,
+        target: &Expr,
+        datum: Datum,
+    ) -> bool {
+        let slot = &mut self.cells[cell].value.datum;
+        if let Some(indices) = place {
+            return store(slot, indices, datum);
+        }
+        let name = target.base().map_or("", |name| name.text.as_str());
+        let reason = format!("it was written at a place in '{name}' not known");
+        *slot = Datum::unknown(reason, target.span);
+        true
+    }
+
     /// The component indices of a part of data of this type, outermost first, and its type.
-    fn place(&mut self, target: &Expr, type_key: &str) -> Option<(Vec<usize>, String)> {
+    pub(super) fn place(&mut self, target: &Expr, type_key: &str) -> Option<(Vec<usize>, String)> {
         match &target.kind {
             ExprKind::Field(base, name) => {
                 let (mut place, key) = self.place(base, type_key)?;

@@ -25,6 +25,18 @@ impl Executor<'_> {
             }
             _ => {}
         }
+        let value = self.built_in_function(expr, name, args);
+        match builtins::function(&name.key) {
+            Some(function) => {
+                let how = format!("is written by {}", name.text);
+                self.mark_unknown_if(args, &how, |place, _| function.writes_to(place));
+            }
+            None => self.mark_changed_outside(&name.text, args),
+        }
+        value
+    }
+
+    fn built_in_function(&mut self, expr: &Expr, name: &Ident, args: &[Arg]) -> Value {
         match name.key.as_str() {
             "present" => return self.present(args),
             "cjointt" => return self.joint_position(expr),
@@ -129,6 +141,8 @@ fn not_known(name: &Ident, source: Option<Source>) -> String {
     match source {
         Some(Source::Position) => format!("{} depends on where the robot is", name.text),
         Some(Source::Kinematics) => format!("{} needs the robot's kinematics", name.text),
-        _ => format!("the function '{}' is not known", name.text),
+        Some(Source::State) => format!("{} depends on what ran before", name.text),
+        Some(_) => format!("{} is not calculated", name.text),
+        None => format!("the function '{}' is not known", name.text),
     }
 }

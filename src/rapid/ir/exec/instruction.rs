@@ -4,10 +4,11 @@ use super::arguments::Arguments;
 use super::executor::{Cell, Executor};
 use super::flow::{Flow, number_text};
 use super::waits::Length;
-use crate::rapid::builtins::{self, Count, Effect, Instruction, Level, Wait, Written};
-use crate::rapid::ir::hir::{Arg, ArgKind, ExprKind, Stmt};
+use crate::rapid::builtins::{self, ArgumentPlace, Count, Effect, Instruction, Level, Wait};
+use crate::rapid::ir::hir::{Arg, Stmt};
 use crate::rapid::ir::movement::Output;
 use crate::rapid::ir::value::{Datum, Dependence, Value};
+use crate::rapid::ir::walk::placed;
 
 impl Executor<'_> {
     /// A call of a routine that the program does not declare.
@@ -27,10 +28,11 @@ impl Executor<'_> {
                 return self.wait_signal(stmt, text, &arguments);
             }
             Effect::Wait(Wait::Condition) => return self.wait_until(stmt, text, &arguments),
+            Effect::Wait(Wait::Standstill) => {
+                self.wait(stmt.span, text, Length::Stated(0.0), None);
+            }
             Effect::Wait(Wait::Operator | Wait::Outside) => {
-                if instruction.is_writing() {
-                    self.mark_unknown(args, text);
-                }
+                self.written(text, instruction, args);
                 // The program does not state how long.
                 self.wait(stmt.span, text, Length::Until(None), None);
             }
@@ -56,12 +58,7 @@ impl Executor<'_> {
 
     /// A routine that is neither declared nor built in.
     fn unknown(&mut self, stmt: &Stmt, text: &str, args: &[Arg]) {
-        let reads = |cell: &Cell| {
-            let mut origin = cell.reading.iter();
-            origin.any(|d| matches!(d, Dependence::TrustedPersistent(_)))
-        };
-        let how = format!("may be changed by {text}, which is in no file given");
-        self.mark_unknown_if(args, &how, |cell| !reads(cell));
+        self.mark_changed_outside(text, args);
         self.unknown_effect(
             stmt.span,
             &format!("'{text}' is neither in the program nor an instruction that is known"),
@@ -71,46 +68,38 @@ impl Executor<'_> {
     /// Marks the data that an instruction writes as unknown.
     fn written(&mut self, text: &str, instruction: &Instruction, args: &[Arg]) {
         let how = format!("is written by {text}");
-        match instruction.written() {
-            Some(written) => self.mark_written_unknown(args, written, &how),
-            None if instruction.is_writing() => self.mark_unknown(args, &how),
-            None => {}
-        }
+        self.mark_unknown_if(args, &how, |place, _| instruction.may_write_to(place));
     }
 
     /// Marks all data among the arguments as unknown.
     pub(super) fn mark_unknown(&mut self, args: &[Arg], how: &str) {
-        self.mark_unknown_if(args, how, |_| true);
+        self.mark_unknown_if(args, how, |_, _| true);
     }
 
-    /// Marks the data of the one written argument as unknown.
-    pub(super) fn mark_written_unknown(&mut self, args: &[Arg], written: Written, how: &str) {
-        let by_name = |arg: &&Arg| {
-            matches!(&arg.kind, ArgKind::Named(name, _)
-                if name.key.eq_ignore_ascii_case(written.name))
+    /// Marks the data among the arguments of a routine that is in no file as unknown.
+    pub(super) fn mark_changed_outside(&mut self, text: &str, args: &[Arg]) {
+        let only_read = |cell: &Cell| {
+            let mut origin = cell.reading.iter();
+            origin.any(|d| matches!(d, Dependence::TrustedPersistent(_)))
         };
-        let positional = |arg: &&Arg| matches!(arg.kind, ArgKind::Positional(_));
-        let in_place = || args.iter().filter(positional).nth(written.position);
-        if let Some(arg) = args.iter().find(by_name).or_else(in_place) {
-            self.mark_unknown(std::slice::from_ref(arg), how);
-        }
+        let how = format!("may be changed by {text}, which is in no file given");
+        self.mark_unknown_if(args, &how, |_, cell| !only_read(cell));
     }
 
-    fn mark_unknown_if(&mut self, args: &[Arg], how: &str, may_change: impl Fn(&Cell) -> bool) {
-        for arg in args {
-            let (ArgKind::Positional(expr)
-            | ArgKind::Named(_, expr)
-            | ArgKind::Optional(_, Some(expr))) = &arg.kind
-            else {
-                continue;
-            };
-            if let ExprKind::Ref(name) = &expr.kind
+    pub(super) fn mark_unknown_if(
+        &mut self,
+        args: &[Arg],
+        how: &str,
+        may_change: impl Fn(ArgumentPlace<'_>, &Cell) -> bool,
+    ) {
+        for (place, expr) in placed(args) {
+            if let Some(name) = expr.base()
                 && let Some(cell) = self.cell_of(name)
                 && !self.cells[cell].read_only
-                && may_change(&self.cells[cell])
+                && may_change(place, &self.cells[cell])
             {
                 let reason = format!("'{}' {how}", name.text);
-                self.cells[cell].value.datum = Datum::unknown(reason, arg.span);
+                self.write(cell, expr, Datum::unknown(reason, expr.span));
                 self.record_change(Some(cell));
             }
         }

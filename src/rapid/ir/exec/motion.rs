@@ -2,7 +2,7 @@
 
 use super::arguments::Arguments;
 use super::executor::Executor;
-use crate::rapid::builtins::{self, Instruction, MoveForm, MoveKind, MoveSignature};
+use crate::rapid::builtins::{self, MoveForm, MoveKind, MoveSignature};
 use crate::rapid::ir::convert;
 use crate::rapid::ir::hir::{Expr, ExprKind, Stmt};
 use crate::rapid::ir::movement::{Argument, Movement, Speed, Stop, Target, Tool, Unresolved, Zone};
@@ -89,8 +89,11 @@ impl Executor<'_> {
         });
         if signature.kind == MoveKind::Search {
             let instruction = builtins::instruction(&text.to_lowercase());
-            if let Some(written) = instruction.and_then(Instruction::written) {
-                self.mark_written_unknown(arguments.all, written, "is found by a search");
+            if let Some(instruction) = instruction {
+                let how = "is found by a search";
+                self.mark_unknown_if(arguments.all, how, |place, _| {
+                    instruction.may_write_to(place)
+                });
             }
         }
         if let Some(what) = not_simulated(signature.kind) {

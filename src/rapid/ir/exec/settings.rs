@@ -111,6 +111,14 @@ impl Executor<'_> {
             Setting::ConfL => self.settings_mut().conf_linear = on,
             Setting::GripLoad => {
                 let datum = first()?;
+                // `SetSysData` takes tools and work objects, too; movements name their own.
+                let type_key = values.first().map(|value| &*value.type_key);
+                if matches!(type_key, Some("tooldata" | "wobjdata")) {
+                    return Ok(());
+                }
+                if arguments.has_option("objectname") {
+                    return Err(NotSet::Unknown);
+                }
                 let load = convert::load(datum).map_err(|why| {
                     self.explain_argument(arguments.positional[0], datum, &why);
                     NotSet::Unknown

@@ -55,7 +55,17 @@ fn events(statements: &str) -> Vec<String> {
 
 /// The events of statements with this number of syntax errors, and the unresolved reasons.
 fn executed(statements: &str, errors: usize) -> (Vec<String>, Vec<String>) {
-    let text = format!("MODULE M{DATA}\nPROC main()\n{statements}\nENDPROC\nENDMODULE");
+    executed_with("", statements, errors)
+}
+
+/// The same with more data and routines in the module.
+fn executed_with(
+    declarations: &str,
+    statements: &str,
+    errors: usize,
+) -> (Vec<String>, Vec<String>) {
+    let text =
+        format!("MODULE M{DATA}\nPROC main()\n{statements}\nENDPROC\n{declarations}\nENDMODULE");
     let parse = syntax::parse(text.as_bytes());
     assert!(parse.errors.len() == errors, "{statements}: {:?}", parse.errors);
     let program = Program::new(lower(FileId(0), &parse, text.as_bytes()));
@@ -197,4 +207,74 @@ fn skipped_branches_on_inputs_are_reported() {
     }
     let (_, notes) = executed(&format!("IF diX=1 THEN\nnKey:=1;\nENDIF\nnKey:=2;\n{later}"), 0);
     assert!(notes.is_empty(), "{notes:?}");
+}
+
+/// Data that a function or an instruction writes decide no branch unnoticed.
+#[test]
+fn written_arguments_are_not_known() {
+    let data = "PERS bool sem:=FALSE; VAR num list{3}:=[1,2,3]; VAR errnum e; VAR bool ok;";
+    for statements in [
+        "WaitTestAndSet sem; IF sem Set doA;",
+        "ok:=TestAndSet(sem); IF sem Set doA;",
+        "ok:=StrToVal(\"5\", nKey); IF nKey=5 Set doA;",
+        "ok:=StrToVal(\"5\", list{2}); IF list{2}=5 Set doA;",
+        "jVar:=CalcJointT(p10, tool0 \\ErrorNumber:=e); IF e=1 Set doA;",
+        "TPReadNum list{2}, \"?\"; IF list{2}=5 Set doA;",
+        "foreign list{2}; IF list{2}=5 Set doA;",
+        "ok:=foreign(nKey); IF nKey=5 Set doA;",
+    ] {
+        let (_, reasons) = executed_with(data, statements, 0);
+        let of_condition = |reason: &String| reason.contains("condition is not known");
+        assert!(reasons.iter().any(of_condition), "{statements}: {reasons:?}");
+    }
+    let (events, reasons) =
+        executed_with(data, "ok:=StrToVal(\"5\", list{2}); IF list{1}=1 Set doA;", 0);
+    assert_eq!((&*events, &*reasons), (&["Set doA=1".to_owned()][..], &[][..]));
+}
+
+/// A part of data that a routine has by reference has what the routine wrote.
+#[test]
+fn parts_are_passed_by_reference() {
+    let declarations = "VAR num list{3}:=[1,2,3];
+        PROC add(INOUT num x) x:=x+10; ENDPROC
+        PROC shift(VAR robtarget p \\num own) own:=own+1; p.trans.x:=p.trans.x+own; ENDPROC
+        PROC outer(\\num dx) shift pVar \\own?dx; SetGO goX, dx; ENDPROC";
+    let events = |statements: &str| executed_with(declarations, statements, 0).0;
+    assert_eq!(events("nKey:=2; add list{nKey}; SetGO goX, list{2};"), ["SetGO goX=12"]);
+    assert_eq!(
+        events("pVar:=p10; add pVar.trans.x; MoveL pVar, v100, fine, tool0;"),
+        ["MoveL 110.0"]
+    );
+    // An argument by value stays.
+    assert_eq!(
+        events("pVar:=p10; outer \\dx:=5; MoveL pVar, v100, fine, tool0;"),
+        ["SetGO goX=5", "MoveL 106.0"]
+    );
+}
+
+#[test]
+fn the_load_of_the_system_is_the_load_of_the_robot() {
+    let data = "PERS loaddata load8:=[8,[0,0,100],[1,0,0,0],0,0,0];";
+    let masses = |statements: &str| {
+        struct Masses(Vec<Option<f64>>);
+        impl Machine for Masses {
+            fn on_movement(&mut self, movement: Result<Movement, Unresolved>) {
+                let load = movement.ok().and_then(|movement| movement.settings.grip_load);
+                self.0.push(load.map(|load| load.mass));
+            }
+            fn on_wait(&mut self, _: Wait) -> WaitResult {
+                WaitResult::Ended
+            }
+            fn on_output(&mut self, _: Output) {}
+        }
+        let text = format!("MODULE M{DATA}{data}\nPROC main() {statements} ENDPROC\nENDMODULE");
+        let parse = syntax::parse(text.as_bytes());
+        let program = Program::new(lower(FileId(0), &parse, text.as_bytes()));
+        let mut masses = Masses(Vec::new());
+        execute(&program, program.entry("main").expect("main"), &mut masses);
+        masses.0
+    };
+    let movement = "MoveJ p10, v100, fine, tool0;";
+    assert_eq!(masses(&format!("SetSysData load8; {movement}")), [Some(8.0)]);
+    assert_eq!(masses(&format!("SetSysData tool0; {movement}")), [None]);
 }

@@ -60,10 +60,10 @@ impl Executor<'_> {
     ) -> Flow {
         let signal = arguments.positional.first().and_then(|expr| self.first_signal(expr));
         let flow = self.wait_at_most(stmt, text, Length::Until(signal.clone()), arguments);
-        if let (Ok(()), Some(signal), Some(value)) = (&flow, signal, arguments.positional.get(1)) {
-            if let Some(level) = self.eval_level(value).datum.num() {
-                self.set_level(&signal, level);
-            }
+        if let (Ok(()), Some(signal), Some(value)) = (&flow, signal, arguments.positional.get(1))
+            && let Some(level) = self.eval_level(value).datum.num()
+        {
+            self.set_level(&signal, level);
         }
         flow.err().unwrap_or(Flow::Next)
     }
