@@ -203,15 +203,17 @@ pub mod retime;
 #[doc(hidden)]
 pub mod tool;
 
+pub use nalgebra;
 pub use tool::cli::command_line;
 
 /// RAPID text, its tokens and its lossless syntax tree.
 pub mod syntax {
     pub use crate::rapid::syntax::{
-        Element, Node, NodeKind, Parse, SyntaxError, Token, TokenKind, Tree, parse,
+        Element, Node, NodeKind, Parse, Related, SyntaxError, Token, TokenKind, Tolerance,
+        Tolerated, Tree, parse,
     };
     pub use crate::rapid::text::{
-        Edit, EditError, FileId, LineIndex, Position, SourceFile, Span, apply,
+        Charset, Edit, EditError, FileId, LineIndex, Position, SourceFile, Span, apply,
     };
 }
 
@@ -230,15 +232,17 @@ pub mod program {
 pub mod robot {
     pub use crate::arm::effects::with_estimates;
     pub use crate::arm::robot::{
-        Brakes, Drive, Friction, Geometry, Joint, Limits, Link, MAX_DOF, Model, Motors, Origin,
-        Provenance, RobotError, Sharing, find, from_toml, import_urdf, load, names, to_toml,
+        Brakes, Controller, Coupling, Drive, Friction, Geometry, Joint, Limits, Link, MAX_DOF,
+        Model, Motors, Opw, Origin, Provenance, RobotError, Sensors, Sharing, Standstill, Stribeck,
+        Wrist, find, from_toml, import_urdf, load, names, to_toml,
     };
 }
 
 /// Forward and inverse kinematics, Jacobian, configurations, singularities.
 pub mod kinematics {
     pub use crate::arm::kinematics::{
-        Conf, IkError, Singularity, conf_of, fk, ik_all, ik_conf, ik_near, jacobian, singularity,
+        Conf, IkError, LimitViolation, Singularity, Tcp, conf_of, fk, ik_all, ik_conf, ik_near,
+        jacobian, singularity,
     };
 }
 
@@ -258,11 +262,21 @@ pub mod effects {
 
 /// The virtual controller: a program becomes a timed motion.
 pub mod motion {
-    pub use crate::rapid::ir::movement::{Movement, Output, Unresolved, Wait};
+    pub use crate::rapid::builtins::MoveForm;
+    pub use crate::rapid::ir::exec::Note;
+    pub use crate::rapid::ir::movement::{
+        LoadData, Movement, Output, RobTarget, Settings, Speed, Stop, Target, Tool, Unresolved,
+        Wait, WorkObject, Zone,
+    };
+    pub use crate::retime::motion::joint_state::JointState;
+    pub use crate::retime::motion::pace::Pace;
+    pub use crate::retime::motion::stream::{Stream, StreamError};
+    pub use crate::retime::motion::timed::TimedMotion;
     pub use crate::retime::motion::timeline::{
         Event, MoveRecord, Run, Simulation, WaitBasis, WaitRecord, What,
     };
     pub use crate::retime::motion::{Options, simulate};
+    pub use crate::retime::path::{Leg, LegKind};
 }
 
 /// The energy of a simulated program, in six parts.
@@ -287,15 +301,20 @@ pub mod log {
 /// From logs to the dynamic model of a robot, with standard errors.
 pub mod identify {
     pub use crate::learn::identify::{
-        Fit, Free, Hints, Identified, IdentifyError, Misses, Samples, Settings, Weighting,
-        identify, prepare,
+        Block, Condition, Fit, Free, Grade, Hints, Identified, IdentifyError, Misses, Quality,
+        Samples, Settings, Solution, Source, Weighting, identify, prepare,
     };
 }
 
 /// The main job: a program in, a verified program that takes less energy out.
 pub mod retrofit {
+    pub use crate::retime::optimize::check::Check;
+    pub use crate::retime::optimize::cost::Cost;
+    pub use crate::retime::optimize::freedom::{Bound, Freedom};
+    pub use crate::retime::optimize::reason::Reason;
+    pub use crate::tool::emit::{EmitError, Layout};
     pub use crate::tool::retrofit::{
-        Budget, Figures, Objective, OutputFile, OutputKind, Retrofit, RetrofitError, Settings,
-        Source, Verification, retrofit,
+        Budget, Figures, Objective, OutputFile, OutputKind, Retrofit, RetrofitError, Segment,
+        SegmentKind, Settings, Source, Verification, retrofit,
     };
 }

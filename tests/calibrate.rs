@@ -242,7 +242,9 @@ fn a_calibrated_saving_has_a_narrow_interval_for_robots_of_all_sizes() {
             assert!(bound.is_none_or(|bound| bound <= after), "{name}: {bound:?} J, {after} J");
         }
         let page = optimize_report(&done, &files, &found.model, "main").unwrap();
-        for reported in ["plausible robots it saves", "of the variance", "most would tell"] {
+        for reported in
+            ["plausible robots it saves", "shares of the variance", "most informative measurement"]
+        {
             assert!(page.contains(reported), "{name}: {reported}");
         }
         let Interval { median, low, high } = done.uncertainty.unwrap().saving_percent[1];

@@ -50,6 +50,18 @@ fn exit_codes_agree_with_the_contract() {
 }
 
 #[test]
+fn syntax_errors_are_noted() {
+    let folder = folder("EW101_unneeded_stop_point.mod");
+    let broken = "MODULE B\nPROC b()\nIF x THEN\nWaitTime 1;\nENDPROC\nENDMODULE\n";
+    fs::write(folder.path().join("Broken.mod"), broken).unwrap();
+    let output = joulepath_in(folder.path(), &["lint", "."]);
+    let note = "Broken.mod:5: expected ENDIF";
+    let message = stderr(&output);
+    assert!(message.contains(note) && message.contains("not linted"), "{message}");
+    assert!(!stderr(&joulepath_in(folder.path(), &["lint", "Cell.mod"])).contains("not linted"));
+}
+
+#[test]
 fn options_and_configuration_select_rules() {
     let folder = folder("EW101_unneeded_stop_point.mod");
     let only = codes(&["--select", "stops"], folder.path());
@@ -201,7 +213,7 @@ fn the_reason_for_missing_joules_is_reported() {
     let folder = folder("EW102_stop_in_line.mod");
     let messages = |args: &[&str]| stderr(&joulepath_in(folder.path(), args));
     let lint = |more: &[&str]| messages(&[&["lint", "Cell.mod"], more].concat());
-    assert!(lint(&[]).contains("nothing has joules: no robot is named"));
+    assert!(lint(&[]).contains("findings have no joules: no robot is named"));
     let bare = "extends = \"IRB120-3/0.58\"\nname = \"another\"\n";
     fs::write(folder.path().join("bare.toml"), bare).unwrap();
     // An arm with unknown bodies has estimated ones.

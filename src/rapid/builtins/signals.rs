@@ -30,7 +30,7 @@ pub(super) const INSTRUCTIONS: &[Instruction] = &[
     plain("IDelete", "Interrupt"),
     plain("IDisable", ""),
     plain("IEnable", ""),
-    writing("InvertDO", "Signal:signaldo").effect(Output(Level::Inverse)),
+    output("InvertDO", "Signal:signaldo", Level::Inverse),
     writing("IPers", "\\Single \\SingleSafe Name Interrupt"),
     writing("ISignalAI", I_ANALOG_IN),
     writing("ISignalAO", I_ANALOG_OUT),

@@ -2,7 +2,7 @@
 
 pub mod averaged;
 pub mod controller;
-mod joint_state;
+pub mod joint_state;
 mod late;
 mod leg_times;
 pub mod pace;

@@ -1,6 +1,6 @@
 //! `joulepath calibrate`: narrows a robot's estimate by measured power.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context, bail};
@@ -47,12 +47,8 @@ pub(super) fn run(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
         );
     }
     let job = common::prepare(&args.program)?;
-    let modules = job.input.files.iter().map(|file| Path::new(&file.source.path));
-    let mut inputs =
-        modules.chain([args.log.as_path()]).chain(job.model.file.as_deref().map(Path::new));
-    if inputs.any(|input| output::is_same_file(input, &args.out)) {
-        bail!("'{}' is read by this command, too: name another file for --out", args.out.display());
-    }
+    let inputs = job.read_paths().chain([args.log.as_path()]);
+    output::refuse_inputs(&[("--out", Some(&args.out))], inputs)?;
     let (program, entry) = read_program(&job.files, &job.entry)?;
     signals::check(&args.program.cell, &job.options.levels, &program)?;
     let quiet = args.program.cell.quiet;

@@ -130,6 +130,12 @@ impl Job {
         !self.streams.modules.is_empty()
     }
 
+    /// The files that were read: modules, and the file of the robot.
+    pub(super) fn read_paths(&self) -> impl Iterator<Item = &Path> {
+        let modules = self.input.files.iter().map(|file| file.source.path.as_str());
+        modules.chain(self.model.file.as_deref()).map(Path::new)
+    }
+
     /// The files that belong to other tasks.
     pub(super) fn others(&self) -> impl Iterator<Item = &SourceFile> {
         let is_own = |path: &str| self.files.iter().any(|own| own.file.path == path);

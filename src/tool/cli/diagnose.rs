@@ -33,7 +33,7 @@ use crate::tool::report::html::diagnose_report;
     after_help = "Example: joulepath diagnose --robot nominal.toml --log run1.csv run2.csv --heldout other.csv --out model.toml"
 )]
 pub(super) struct DiagnoseArgs {
-    /// The robot as it is believed: a name (joulepath robots list) or a robot file.
+    /// The nominal model of the robot: a name (joulepath robots list) or a robot file.
     #[arg(long, value_name = "NAME|FILE")]
     robot: String,
 
@@ -42,7 +42,7 @@ pub(super) struct DiagnoseArgs {
     #[arg(long, value_name = "FILE", required = true, num_args = 1..)]
     log: Vec<PathBuf>,
 
-    /// Logs that only grade; otherwise the last of several logs.
+    /// Logs used only for the evaluation; otherwise the last of several logs.
     #[arg(long, value_name = "FILE", num_args = 1..)]
     heldout: Vec<PathBuf>,
 
@@ -50,7 +50,7 @@ pub(super) struct DiagnoseArgs {
     #[arg(long, value_name = "FILE", num_args = 1..)]
     baseline: Vec<PathBuf>,
 
-    /// The program whose runs the logs are, by their column `cmd`.
+    /// The program that ran while the logs were recorded; their column `cmd` numbers its movements.
     #[arg(long, value_name = "PATH")]
     program: Option<PathBuf>,
 
@@ -142,20 +142,11 @@ pub(super) fn diagnose_case(
 /// Refuses outputs that overwrite an input, and logs that are given twice or in two roles.
 fn check_paths(args: &DiagnoseArgs) -> anyhow::Result<()> {
     let within = |path: &Path, files: &[PathBuf]| files.iter().any(|it| is_same_file(it, path));
-    let robot = vec![PathBuf::from(&args.robot)];
-    let read = [&robot, &args.log, &args.heldout, &args.baseline];
-    for (option, written) in [("--out", &args.out), ("--report", &args.report)] {
-        if let Some(path) = written
-            && read.iter().any(|files| within(path, files))
-        {
-            bail!("{option} {}: this file is read; give another name", path.display());
-        }
-    }
-    if let (Some(model), Some(page)) = (&args.out, &args.report)
-        && (model == page || is_same_file(model, page))
-    {
-        bail!("--report {}: --out writes this file; give another name", page.display());
-    }
+    let logs = args.log.iter().chain(&args.heldout).chain(&args.baseline).map(PathBuf::as_path);
+    output::refuse_inputs(
+        &[("--out", args.out.as_ref()), ("--report", args.report.as_ref())],
+        logs.chain([Path::new(&args.robot)]),
+    )?;
     for (number, path) in args.log.iter().enumerate() {
         if within(path, &args.log[..number]) {
             bail!("--log {}: this file is given twice; give it once", path.display());

@@ -1,7 +1,7 @@
 //! `joulepath identify`: a dynamic model from measured logs.
 
 use std::ops::RangeInclusive;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, bail};
@@ -123,6 +123,11 @@ fn date(text: &str) -> Result<String, String> {
 }
 
 pub(super) fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
+    let logs = args.log.iter().chain(&args.validate).map(PathBuf::as_path);
+    output::refuse_inputs(
+        &[("--out", args.out.as_ref()), ("--report", args.report.as_ref())],
+        logs.chain([Path::new(&args.robot)]),
+    )?;
     let model = effects::load(&args.robot)?;
     let map = ColumnMap::parse(&args.map)?;
     if let Some(period) = args.period.filter(|period| !PERIODS.contains(period)) {

@@ -26,7 +26,7 @@ use crate::tool::report;
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 #[derive(Debug, Default, Args)]
 #[command(
-    after_help = "Without --robot only what needs no robot is found, and nothing has joules. \
+    after_help = "Without --robot, only rules that need no robot run, and findings have no joules. \
     joulepath rule CODE explains a finding; a comment `! joulepath: ignore CODE reason` takes one \
     back.\n\nExit codes: 0, 1 where more is wasted than --max-waste allows, 2 where nothing can \
     be read.\n\nExample: joulepath lint fixtures/pick_place --robot IRB1600-10/1.45"
@@ -103,6 +103,12 @@ pub(super) enum LintFormat {
 
 pub(super) fn run(args: &LintArgs) -> anyhow::Result<ExitCode> {
     let mut setup = Setup::new(args)?;
+    let read = setup.programs.files.iter().map(|file| Path::new(&file.path));
+    let robot = setup.programs.model.as_ref().and_then(|model| model.file.as_deref());
+    output::refuse_inputs(
+        &[("--write-baseline", args.write_baseline.as_ref())],
+        read.chain(robot.map(Path::new)),
+    )?;
     let mut report = if args.fix || args.unsafe_fixes || args.diff {
         let report = fix(args, &mut setup.programs)?;
         if args.diff {
@@ -378,10 +384,11 @@ fn write(args: &LintArgs, setup: &Setup, report: &Report) -> anyhow::Result<()> 
         None => "no robot is named (--robot NAME)".to_owned(),
         Some(model) if !model.has_dynamics() => format!("{} has no dynamics", model.name),
         Some(_) if report.cycle_energy_j.is_none() => {
-            "no file has the routine that starts a program (--entry NAME)".to_owned()
+            "no file, or more than one, has the routine that starts a program (--entry NAME)"
+                .to_owned()
         }
         Some(_) => return Ok(()),
     };
-    note(args.cell.quiet, &format!("nothing has joules: {why}"));
+    note(args.cell.quiet, &format!("findings have no joules: {why}"));
     Ok(())
 }

@@ -65,7 +65,7 @@ pub(super) struct OptimizeArgs {
     #[arg(long, value_enum, default_value_t = ObjectiveArg::Energy)]
     objective: ObjectiveArg,
 
-    /// What stands for energy on each path. Joules, bounds and the sharing of time stay electrical.
+    /// The cost function on each path. Joules, bounds and the sharing of time stay electrical.
     #[arg(long, value_enum, default_value_t = EnergyArg::Electrical)]
     energy: EnergyArg,
 
@@ -171,7 +171,7 @@ enum LayoutArg {
     Auto,
 }
 
-/// What stands for energy.
+/// The cost function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum EnergyArg {
     /// What the robot takes from the grid.
@@ -219,6 +219,7 @@ pub(super) fn refresh(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
 
 fn optimize_job(args: &OptimizeArgs, job: &Job) -> anyhow::Result<ExitCode> {
     let settings = settings(args, job)?;
+    output::refuse_inputs(&[("--report", args.report.as_ref())], job.read_paths())?;
     let quiet = args.program.cell.quiet;
     // The folder of a single task does not include the controller's module list.
     let paths = args.program.cell.paths.as_slice();

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 
 /// A written file that is not yet at its final path.
 pub(super) struct Staged {
@@ -24,10 +24,10 @@ pub(super) fn stage(path: &Path, bytes: &[u8]) -> anyhow::Result<Staged> {
     // A link stays a link: its target is written.
     let path = &path.canonicalize().unwrap_or_else(|_| path.to_owned());
     if std::fs::metadata(path).is_ok_and(|metadata| metadata.permissions().readonly()) {
-        anyhow::bail!("'{}' is read-only; make it writable to have it changed", path.display());
+        bail!("'{}' is read-only; make it writable to have it changed", path.display());
     }
     if path.is_dir() {
-        anyhow::bail!("'{}' is a folder; name a file in it", path.display());
+        bail!("'{}' is a folder; name a file in it", path.display());
     }
     let folder = parent(path);
     let closed = || {
@@ -71,6 +71,27 @@ pub(super) fn write_all<P: AsRef<Path>, B: AsRef<[u8]>>(
 /// Whether two paths lead to the same existing file.
 pub(super) fn is_same_file(a: &Path, b: &Path) -> bool {
     a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b))
+}
+
+/// Refuses an output that is a file which the command reads, and two outputs that are one file.
+pub(super) fn refuse_inputs<'a>(
+    outputs: &[(&str, Option<&PathBuf>)],
+    inputs: impl IntoIterator<Item = &'a Path>,
+) -> anyhow::Result<()> {
+    let inputs: Vec<&Path> = inputs.into_iter().collect();
+    let mut before: Vec<(&str, &PathBuf)> = Vec::new();
+    for (option, path) in outputs {
+        let Some(path) = path else { continue };
+        if inputs.iter().any(|input| is_same_file(input, path)) {
+            bail!("{option} {}: this file is read; give another name", path.display());
+        }
+        let same = before.iter().find(|(_, other)| other == path || is_same_file(other, path));
+        if let Some((other, _)) = same {
+            bail!("{option} {}: {other} writes this file; give another name", path.display());
+        }
+        before.push((option, path));
+    }
+    Ok(())
 }
 
 /// Writes files into a folder, with paths relative to it. A new folder appears all at once; in an

@@ -5,7 +5,7 @@ mod doubts;
 use std::fmt::Write as _;
 use std::fs;
 use std::io::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, bail};
@@ -60,6 +60,10 @@ pub(super) struct PredictArgs {
 }
 
 pub(super) fn run(args: &PredictArgs) -> anyhow::Result<ExitCode> {
+    output::refuse_inputs(
+        &[("--out", args.out.as_ref())],
+        [args.log.as_path(), Path::new(&args.robot)],
+    )?;
     let model = effects::load(&args.robot)?;
     let model = if model.has_dynamics() { model } else { effects::load_estimated(&args.robot)? };
     ready(&model, Use::Predict)?;

@@ -18,7 +18,7 @@ use crate::arm::robot::Model;
 use crate::rapid::ir::hir::Module;
 use crate::rapid::ir::lower;
 use crate::rapid::ir::program::{Program, RoutineId};
-use crate::rapid::syntax;
+use crate::rapid::syntax::{self, SyntaxError};
 use crate::rapid::text::Span;
 use crate::retime::energy::account;
 use crate::retime::motion::simulate;
@@ -32,6 +32,8 @@ pub struct Report {
     pub cycle_energy_j: Option<f64>,
     /// Number of unresolved places.
     pub unresolved: usize,
+    /// The files with syntax errors by number, in file order: what stands there is not linted.
+    pub syntax_errors: Vec<(usize, Vec<SyntaxError>)>,
 }
 
 impl Report {
@@ -52,6 +54,7 @@ impl Report {
 /// A parsed file.
 struct ParsedFile {
     modules: Vec<Module>,
+    errors: Vec<SyntaxError>,
     suppressions: Vec<Suppression>,
 }
 
@@ -78,7 +81,12 @@ pub fn lint(job: &Job<'_>) -> Report {
     let read = read(job, &ReadCache::default());
     // Cycles are not kept: those of all programs of a plant would fill the memory.
     let report = |group: &Group| lint_group(job, group, &read).0;
-    merged(programs(job, &read).par_iter().map(report).collect())
+    let mut report = merged(programs(job, &read).par_iter().map(report).collect());
+    let modules: BTreeSet<usize> =
+        job.groups.iter().flat_map(|group| group.files.iter().copied()).collect();
+    let errors = modules.into_iter().map(|file| (file, read[file].errors.clone()));
+    report.syntax_errors = errors.filter(|(_, errors)| !errors.is_empty()).collect();
+    report
 }
 
 /// Lints all programs; also returns their cycles.
@@ -132,7 +140,8 @@ fn read(job: &Job<'_>, kept: &ReadCache) -> Vec<Arc<ParsedFile>> {
             }
             let parse = syntax::parse(&file.bytes);
             let modules = lower(file.id, &parse, &file.bytes);
-            Arc::new(ParsedFile { modules, suppressions: suppressions(file, &parse) })
+            let suppressions = suppressions(file, &parse);
+            Arc::new(ParsedFile { modules, errors: parse.errors, suppressions })
         })
         .collect()
 }
@@ -216,7 +225,7 @@ fn lint_group(job: &Job<'_>, group: &Group, read: &[Arc<ParsedFile>]) -> (Report
         .map(|cycle| cycle.account.total.energy_j())
         .filter(|energy| energy.is_finite());
     let unresolved = context.unresolved.len();
-    let report = Report { findings, cycle_energy_j: energy, unresolved };
+    let report = Report { findings, cycle_energy_j: energy, unresolved, ..Report::default() };
     (report, cycle)
 }
 

@@ -45,5 +45,9 @@ pub(super) fn contributions(parts: &[Contribution]) -> Option<String> {
     let named = parts.iter().map(|part| (part.group.as_str(), part.share));
     let groups: Vec<String> =
         named.chain(rest).map(|(group, share)| format!("{group} {:.0} %", 100.0 * share)).collect();
-    Some(format!("of the variance: {}; most would tell {}", groups.join(", "), first.narrowed_by))
+    Some(format!(
+        "shares of the variance: {}; the most informative measurement: {}",
+        groups.join(", "),
+        first.narrowed_by
+    ))
 }

@@ -241,12 +241,15 @@ fn remarks(retrofit: &Retrofit) -> Vec<String> {
     if is_rewritten(retrofit) && !retrofit.lower_limits.is_empty() {
         let lower = |lower: &LowerLimits| {
             let percent = 100.0 * (1.0 - lower.share);
-            format!("{percent:.0} %: {:.2} s for {:.2} s", lower.optimized_s, lower.original_s)
+            format!(
+                "{percent:.0} % lower: {:.2} s, original {:.2} s",
+                lower.optimized_s, lower.original_s
+            )
         };
         let cycles: Vec<String> = retrofit.lower_limits.iter().map(lower).collect();
         lines.push(format!(
-            "if the true limits are lower than assumed, the cycle takes, retrofit for original: {}",
-            cycles.join(", ")
+            "cycle if the true limits are lower than assumed: {}",
+            cycles.join("; ")
         ));
     }
     if retrofit.potential_j > 0.0 {

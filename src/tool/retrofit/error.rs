@@ -53,8 +53,8 @@ pub enum RetrofitError {
     },
     /// The module with the entry has syntax errors.
     #[error(
-        "{path}:{line}:{column}: {message}; the module holds the entry routine '{entry}', so it \
-         has to be mended first (joulepath parse shows all errors)"
+        "{path}:{line}:{column}: {message}; the entry routine '{entry}' cannot be read: correct the \
+         syntax errors of its module first (joulepath parse shows all)"
     )]
     BrokenEntry {
         /// File.

@@ -30,6 +30,7 @@ pub(super) struct ImportArgs {
 
 pub(super) fn run(args: &ImportArgs) -> anyhow::Result<ExitCode> {
     let path = configuration(&args.source)?;
+    output::refuse_inputs(&[("--out", args.out.as_ref())], [path.as_path()])?;
     let shown = path.display().to_string();
     let bytes =
         fs::read(&path).with_context(|| format!("cannot read '{shown}'; check the path"))?;

@@ -39,7 +39,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         let dead = !site.reachable && !context.in_handler(site);
         // The first of several in a row is enough.
         if dead && last != Some(site.place.0) {
-            let message = format!("no way leads to this {}", site.name);
+            let message = format!("this {} is unreachable", site.name);
             findings.push(Finding::new(&RULE, site.stmt.span, message));
         }
         last = dead.then_some(site.place.0);

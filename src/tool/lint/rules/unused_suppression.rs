@@ -65,7 +65,7 @@ pub(crate) fn report_unused(
         texts.push(format!("there is no rule {}: joulepath rule lists them", unknown.join(", ")));
     }
     if !vain.is_empty() {
-        let so = if whole { "the comment takes nothing back" } else { "leave it out" };
+        let so = if whole { "the comment suppresses nothing" } else { "leave it out" };
         texts.push(format!("nothing here is found by {}: {so}", vain.join(", ")));
     }
     if texts.is_empty() {
