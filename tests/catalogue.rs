@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use joulepath::arm::dynamics::Load;
 use joulepath::arm::kinematics::{conf_of, fk, ik_all, ik_conf, limits_ok};
-use joulepath::arm::robot::{Coupling, Link, Model, Provenance, find, names};
+use joulepath::arm::robot::{Coupling, Link, Model, Provenance, find, from_toml, names, to_toml};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 fn robot(name: &str) -> Model {
@@ -42,6 +42,22 @@ fn every_robot_states_its_sources_and_has_consistent_data() {
     }
     assert!(count >= 60, "{count}");
     assert!(names().is_sorted());
+}
+
+#[test]
+fn a_written_robot_is_read_as_the_same_robot() {
+    for model in robots() {
+        let name = &model.name;
+        let read = from_toml("written.toml", &to_toml(&model)).unwrap();
+        assert_eq!(read.limits, model.limits, "{name}");
+        assert_eq!(read.controller, model.controller, "{name}");
+        assert_eq!(read.links, model.links, "{name}");
+        assert_eq!(read.friction, model.friction, "{name}");
+        assert_eq!(read.motors, model.motors, "{name}");
+        assert_eq!(read.drive, model.drive, "{name}");
+        assert_eq!(read.brakes, model.brakes, "{name}");
+        assert_eq!(read.wrist, model.wrist, "{name}");
+    }
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Values in TOML notation.
+//! Values in TOML notation. toml_edit writes numbers without an exponent: 1e-34 takes 36 characters.
 
 use std::fmt::Write;
 

@@ -149,6 +149,14 @@ fn limits(model: &Model, out: &mut Writer<'_>) {
     entries.extend(limits.tcp_speed.map(|x| ("tcp_speed", number(x))));
     entries.extend(limits.tcp_acceleration.map(|x| ("tcp_acceleration", number(x))));
     out.table("limits", &entries);
+    if let Some(by_pose) = &limits.acceleration_by_pose {
+        let entries = [
+            ("axis_1", list(&by_pose.axis_1)),
+            ("axis_2", list(&by_pose.axis_2)),
+            ("axis_3", list(&by_pose.axis_3)),
+        ];
+        out.table("limits.acceleration_by_pose", &entries);
+    }
     for (i, wider) in limits.position_if.iter().enumerate() {
         let entries = [
             ("joint", (wider.joint + 1).to_string()),
@@ -257,6 +265,8 @@ fn power(model: &Model, out: &mut Writer<'_>) {
     let mut entries = Vec::new();
     entries.extend(controller.friction_level.as_ref().map(|x| ("friction_level", list(x))));
     entries.extend(controller.ramp_s.map(|x| ("ramp_s", number(x))));
+    entries.extend(controller.ramp_core.map(|x| ("ramp_core", number(x))));
+    entries.extend(controller.closing.map(|x| ("closing", number(x))));
     entries.extend(controller.settling_s.map(|x| ("settling_s", number(x))));
     entries.extend(controller.interpolation_s.map(|x| ("interpolation_s", number(x))));
     if !entries.is_empty() {

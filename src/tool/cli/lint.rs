@@ -118,6 +118,7 @@ pub(super) fn run(args: &LintArgs) -> anyhow::Result<ExitCode> {
     } else {
         lint::lint(&setup.programs.job())
     };
+    note_syntax_errors(args, &setup.programs.files, &report);
     if let Some(path) = &args.write_baseline {
         let prints = report::lint::fingerprints(&report.findings, &setup.programs.files);
         let text = serde_json::to_string_pretty(&prints)? + "\n";
@@ -128,6 +129,24 @@ pub(super) fn run(args: &LintArgs) -> anyhow::Result<ExitCode> {
     }
     write(args, &setup, &report)?;
     over_limit(&setup, &report)
+}
+
+/// What cannot be read is not linted: the first error of each file is shown.
+fn note_syntax_errors(args: &LintArgs, files: &[SourceFile], report: &Report) {
+    for (file, errors) in &report.syntax_errors {
+        let (file, first) = (&files[*file], &errors[0]);
+        let line = file.position(first.start).line;
+        let more = match errors.len() - 1 {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        let text = format!(
+            "{}:{line}: {}{more}: what stands there is not linted; joulepath parse {} shows all \
+             syntax errors",
+            file.path, first.message, file.path
+        );
+        note(args.cell.quiet, &text);
+    }
 }
 
 /// Applies fixes and reports the remaining findings.
