@@ -36,7 +36,9 @@ pub(crate) fn named(file: &str, source: &str) -> Vec<Named> {
             _ => {}
         }
         let continues = i > 0 && matches!(tokens[i - 1].text, "::" | ".");
-        let names_path = is_name(token) && text_at(i + 1) == "::";
+        // `pub(in path)` names the modules that may import: it imports nothing.
+        let is_visibility = i > 1 && tokens[i - 1].text == "in" && tokens[i - 2].text == "(";
+        let names_path = is_name(token) && text_at(i + 1) == "::" && !is_visibility;
         let names_crate = i > 0 && tokens[i - 1].text == "use" && is_name(token);
         if (names_path || names_crate) && !continues {
             let module = module(file, &inline);
