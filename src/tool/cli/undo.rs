@@ -113,13 +113,27 @@ pub(super) fn plan<'a>(
 }
 
 impl Plan<'_> {
-    /// Writes the undo folder and returns its path; the program is not changed.
+    /// Writes the undo folder and returns its path; the program is not changed. An older undo folder is
+    /// kept until the new one is there.
     pub(super) fn write(&self) -> anyhow::Result<PathBuf> {
-        if self.folder.exists() {
-            fs::remove_dir_all(&self.folder)
-                .with_context(|| format!("cannot replace '{}'", self.folder.display()))?;
+        let failed = || format!("cannot replace '{}'", self.folder.display());
+        let older = self.folder.with_extension("older");
+        let has_older = self.folder.exists();
+        if has_older {
+            if older.exists() {
+                fs::remove_dir_all(&older).with_context(failed)?;
+            }
+            fs::rename(&self.folder, &older).with_context(failed)?;
         }
-        output::write_folder(&self.folder, self.files.iter().map(|(path, bytes)| (path, bytes)))?;
+        let files = self.files.iter().map(|(path, bytes)| (path, bytes));
+        let written = output::write_folder(&self.folder, files);
+        if has_older {
+            match &written {
+                Ok(()) => fs::remove_dir_all(&older).with_context(failed)?,
+                Err(_) => fs::rename(&older, &self.folder).with_context(failed)?,
+            }
+        }
+        written?;
         Ok(self.folder.clone())
     }
 }

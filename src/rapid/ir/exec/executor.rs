@@ -1,6 +1,6 @@
 //! The state of an execution.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
 
 use super::machine::Machine;
@@ -11,7 +11,7 @@ use crate::rapid::ir::value::{Origin, Value};
 use crate::rapid::text::Span;
 
 /// A statement that was not executed exactly, with the reason.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Eq, Hash, PartialEq)]
 pub struct Note {
     /// Where.
     pub span: Span,
@@ -119,6 +119,8 @@ pub(super) struct Executor<'a> {
     /// The error that is being handled: RAPID's `ERRNO`.
     pub(super) errno: Option<Arc<str>>,
     pub(super) execution: Execution,
+    /// The notes of the execution, each once.
+    noted: HashSet<Note>,
 }
 
 impl<'a> Executor<'a> {
@@ -145,6 +147,7 @@ impl<'a> Executor<'a> {
             deciding: Vec::new(),
             errno: None,
             execution: Execution::default(),
+            noted: HashSet::new(),
         }
     }
 
@@ -163,7 +166,7 @@ impl<'a> Executor<'a> {
 
     pub(super) fn unresolved(&mut self, span: Span, reason: impl Into<String>) {
         let note = Note { span, reason: reason.into() };
-        if !self.execution.unresolved.contains(&note) {
+        if self.noted.insert(note.clone()) {
             self.execution.unresolved.push(note);
         }
     }
