@@ -121,7 +121,11 @@ fn unusable_input_is_refused_without_output() {
         (trajectory(2.0), &["--as", "movej"], "timed trajectory becomes joint targets"),
         ("q1,q2,q3,q4,q5,q6\n90,0,0,0,30,0\n".into(), &[], "name them q1_deg"),
         ("q1,q2,q3,q4,q5,q6\n0,0,0,0,0.5,0\n".into(), &["--as", "egm"], "give a column t"),
-        ("q1,q2,q3,q4,q5,q6,speed\n0,0,0,0,0.5,0,z10\n".into(), &[], "row 2: 'z10' is no speed"),
+        (
+            "q1,q2,q3,q4,q5,q6,speed\n0,0,0,0,0.5,0,z10\n".into(),
+            &[],
+            "row 2: 'z10' is not a predefined speed",
+        ),
         ("x,y,z,w,i,j,k\n8,0,1,0,0,1,0\n".into(), &["--as", "movel"], "row 2: the pose is out"),
         ("a,b\n1,2\n".into(), &[], "give the columns"),
         (

@@ -38,9 +38,9 @@ fn published_dynamics() {
     println!("## Robots with published dynamics\n");
     println!(
         "Three rules rest on the IRB1600, too: friction (its joints 1 to 3 are one of eleven sources), copper \
-         loss (its joint 2), the release of the brakes. The others had a part in none; that the \
-         estimate was wrong for other makers was seen on them, and mended on the arms of the next table and on \
-         five others.\n"
+         loss (its joint 2), the release of the brakes. The other arms were used for none \
+         of them. The estimate was found to be wrong for other makers on these arms, and was corrected with the \
+         arms of the next table and five others.\n"
     );
     println!("| robot | {} |", QUANTITIES.join(" | "));
     println!("|---|{}", "---|".repeat(QUANTITIES.len()));
@@ -75,7 +75,8 @@ fn bodies_of_makers() {
     println!("## Bodies that other makers publish\n");
     println!(
         "The spread of bodies that follow from the axes alone was chosen on the first group; the arms of \
-         the second are by makers that nobody looked at before. Makers were parted by the alphabet.\n"
+         the second are from makers whose data were not looked at before. The makers were split \
+         alphabetically.\n"
     );
     println!("| arm | gravity torque | torque of acceleration |\n|---|---|---|");
     for (folder, group) in [("chosen", "chosen on"), ("unseen", "not looked at")] {

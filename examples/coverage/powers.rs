@@ -79,11 +79,11 @@ pub(crate) fn print() {
          the calibration position. The power at rest follows from three robots; each of them is left out for \
          its own figures. The sheets of the IRB1200 and the IRB6650S give one power for all variants and say \
          neither motion nor load: the cube at full speed is assumed; that of the IRB6650S offers controllers \
-         that take 20 % less, too. They were parted from the others when their misses were known.\n\n\
+         that take 20 % less, too. These two were separated from the others after their errors were known.\n\n\
          No sheet says where the cube is, and accelerations are assumed. The first interval is that of one \
          place, with full load: what `simulate` says. The second is over all places that the robot reaches \
          and over the spread of the accelerations ({ACCELERATION} of their logarithm), where the load is not \
-         stated also over full, half and no load. It was added when the misses of the first were known.\n"
+         stated also over full, half and no load. It was added after the errors of the first were known.\n"
     );
     println!(
         "| robot | motion | published, W | one motion, W | held | spread of motions, W | held |\n\

@@ -1,4 +1,5 @@
-//! Values in TOML notation. toml_edit writes numbers without an exponent: 1e-34 takes 36 characters.
+//! Values in TOML notation. `toml_edit` writes numbers without an exponent: 1e-34 takes 36
+//! characters.
 
 use std::fmt::Write;
 
