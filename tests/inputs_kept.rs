@@ -10,14 +10,13 @@ use command::{IRB1600, joulepath_in, stderr};
 
 /// A motion of all joints, 100 rows.
 fn log() -> String {
-    let mut text = "t,q1,q2,q3,q4,q5,q6,tau1,tau2,tau3,tau4,tau5,tau6\n".to_owned();
-    for row in 0..100 {
+    let row = |row: i32| {
         let t = 0.01 * f64::from(row);
-        let q: Vec<String> =
-            (1..=6).map(|j| format!("{:.6}", 0.3 * (f64::from(j) * t).sin())).collect();
-        text += &format!("{t},{},1,2,3,4,5,6\n", q.join(","));
-    }
-    text
+        let q = (1..=6).map(|j| format!("{:.6}", 0.3 * (f64::from(j) * t).sin()));
+        format!("{t},{},1,2,3,4,5,6", q.collect::<Vec<_>>().join(","))
+    };
+    let header = "t,q1,q2,q3,q4,q5,q6,tau1,tau2,tau3,tau4,tau5,tau6".to_owned();
+    std::iter::once(header).chain((0..100).map(row)).collect::<Vec<_>>().join("\n") + "\n"
 }
 
 #[test]
