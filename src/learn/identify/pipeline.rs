@@ -30,15 +30,7 @@ pub fn identify(
     validation: &[Samples],
     settings: &Settings,
 ) -> Result<Identified, IdentifyError> {
-    for samples in std::iter::once(training).chain(validation) {
-        let logged = samples.rest.len();
-        if logged != model.dof {
-            return Err(IdentifyError::OtherRobot { logged, dof: model.dof });
-        }
-    }
-    if settings.free != Free::All && !model.has_dynamics() {
-        return Err(IdentifyError::NoDynamics(model.name.clone()));
-    }
+    check(model, training, validation, settings)?;
     let (among, known) = free_parameters(settings.free, model.dof);
     let mut nominal = model.clone();
     let among_base = |model: &Model| base_parameters_among(model, &among);
@@ -113,6 +105,24 @@ pub fn identify(
         base,
         fit,
     })
+}
+
+/// Refuses logs of another robot, and a model without the parameters that stay.
+fn check(
+    model: &Model,
+    training: &Samples,
+    validation: &[Samples],
+    settings: &Settings,
+) -> Result<(), IdentifyError> {
+    let logged = |samples: &Samples| samples.rest.len();
+    let mut others = std::iter::once(training).chain(validation).map(logged);
+    if let Some(logged) = others.find(|logged| *logged != model.dof) {
+        return Err(IdentifyError::OtherRobot { logged, dof: model.dof });
+    }
+    if settings.free != Free::All && !model.has_dynamics() {
+        return Err(IdentifyError::NoDynamics(model.name.clone()));
+    }
+    Ok(())
 }
 
 /// Indices of the free parameters among all standard parameters, and the known part of the model.
