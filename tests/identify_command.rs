@@ -261,7 +261,7 @@ fn torques_unrelated_to_the_motion_are_refused() {
     for (rows, message) in [(reversed, "would give power"), (mixed, "explains")] {
         let log = logs.log(&rows);
         let text = refused(&arguments(&log, &[]), message);
-        assert!(text.contains("no robot that can be"), "{text}");
+        assert!(text.contains("no physically possible robot"), "{text}");
     }
     // Half a second has 20 rows.
     let late: Vec<Vec<f64>> = all
