@@ -338,7 +338,7 @@ fn input_files_are_not_overwritten() {
         let before = std::fs::read(target).unwrap();
         let args = ["calibrate", &program, "--robot", "IRB2600-20/1.65", "--log", &log];
         let args = [&args[..], &["--out", target]].concat();
-        command::refused(&args, "is read by this command");
+        command::refused(&args, "this file is read");
         assert_eq!(std::fs::read(target).unwrap(), before);
     }
 }
