@@ -24,7 +24,12 @@ fn inputs_are_never_overwritten() {
     let folder = tempfile::tempdir().unwrap();
     let program = fs::read_to_string("fixtures/lint/EW101_unneeded_stop_point.mod").unwrap();
     let robot = "extends = \"IRB1600-10/1.45\"\nname = \"own\"\n";
-    let inputs = [("p.mod", program), ("log.csv", log()), ("own.toml", robot.to_owned())];
+    let inputs = [
+        ("p.mod", program),
+        ("log.csv", log()),
+        ("own.toml", robot.to_owned()),
+        ("joulepath.toml", "entry = \"main\"\n".to_owned()),
+    ];
     for (name, text) in &inputs {
         fs::write(folder.path().join(name), text).unwrap();
     }
@@ -33,6 +38,10 @@ fn inputs_are_never_overwritten() {
         "simulate p.mod --robot own.toml --report own.toml",
         "simulate p.mod --robot own.toml --report new.html --trajectory new.html",
         "optimize p.mod --robot own.toml --report ./p.mod",
+        "optimize p.mod --robot own.toml --report joulepath.toml",
+        "simulate p.mod --robot own.toml --trajectory joulepath.toml",
+        "lint p.mod --robot own.toml --write-baseline joulepath.toml",
+        "diagnose --robot own.toml --log log.csv --program p.mod --report p.mod",
         "lint p.mod --robot own.toml --write-baseline p.mod",
         "lint p.mod --robot own.toml --write-baseline own.toml",
         "predict --robot own.toml --log log.csv --out log.csv",

@@ -311,25 +311,31 @@ fn robot_needed() -> String {
 
 /// The configuration, and its folder.
 pub(super) fn configuration(args: &CellArgs) -> anyhow::Result<(Config, PathBuf)> {
-    let read = |path: &Path| -> anyhow::Result<(Config, PathBuf)> {
-        let shown = path.to_string_lossy().into_owned();
-        let text = fs::read_to_string(path).map_err(|error| config::ConfigError::Unreadable {
-            path: shown.clone(),
-            reason: error.to_string(),
-        })?;
-        let folder = path.parent().map_or_else(PathBuf::new, Path::to_path_buf);
-        Ok((config::parse(&shown, &text)?, folder))
+    let Some(path) = configuration_path(args) else {
+        return Ok((Config::default(), PathBuf::new()));
     };
-    if let Some(path) = &args.config {
-        return read(path);
+    let shown = path.to_string_lossy().into_owned();
+    let text = fs::read_to_string(&path).map_err(|error| config::ConfigError::Unreadable {
+        path: shown.clone(),
+        reason: error.to_string(),
+    })?;
+    let folder = path.parent().map_or_else(PathBuf::new, Path::to_path_buf);
+    Ok((config::parse(&shown, &text)?, folder))
+}
+
+/// The configuration file that is named, else the nearest one.
+fn configuration_path(args: &CellArgs) -> Option<PathBuf> {
+    if args.config.is_some() {
+        return args.config.clone();
     }
-    if let Some(first) = args.paths.first() {
-        let absolute = fs::canonicalize(first).unwrap_or_else(|_| first.clone());
-        if let Some(path) = config::candidates(&absolute).into_iter().find(|p| p.is_file()) {
-            return read(&path);
-        }
-    }
-    Ok((Config::default(), PathBuf::new()))
+    let first = args.paths.first()?;
+    let absolute = fs::canonicalize(first).unwrap_or_else(|_| first.clone());
+    config::candidates(&absolute).into_iter().find(|path| path.is_file())
+}
+
+/// The files and folders that are named, and the configuration file.
+pub(super) fn named_paths(args: &CellArgs) -> Vec<PathBuf> {
+    args.paths.iter().cloned().chain(configuration_path(args)).collect()
 }
 
 /// The initial joint positions \[rad\].

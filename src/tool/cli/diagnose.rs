@@ -145,7 +145,7 @@ fn check_paths(args: &DiagnoseArgs) -> anyhow::Result<()> {
     let logs = args.log.iter().chain(&args.heldout).chain(&args.baseline).map(PathBuf::as_path);
     output::refuse_inputs(
         &[("--out", args.out.as_ref()), ("--report", args.report.as_ref())],
-        logs.chain([Path::new(&args.robot)]),
+        logs.chain([Path::new(&args.robot)]).chain(args.program.as_deref()),
     )?;
     for (number, path) in args.log.iter().enumerate() {
         if within(path, &args.log[..number]) {

@@ -104,10 +104,11 @@ pub(super) enum LintFormat {
 pub(super) fn run(args: &LintArgs) -> anyhow::Result<ExitCode> {
     let mut setup = Setup::new(args)?;
     let read = setup.programs.files.iter().map(|file| Path::new(&file.path));
+    let named = common::named_paths(&args.cell);
     let robot = setup.programs.model.as_ref().and_then(|model| model.file.as_deref());
     output::refuse_inputs(
         &[("--write-baseline", args.write_baseline.as_ref())],
-        read.chain(robot.map(Path::new)),
+        read.chain(robot.map(Path::new)).chain(named.iter().map(PathBuf::as_path)),
     )?;
     let mut report = if args.fix || args.unsafe_fixes || args.diff {
         let report = fix(args, &mut setup.programs)?;

@@ -60,9 +60,10 @@ pub(super) fn run(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
         plausible: plausible.as_ref(),
     };
     if args.trajectory.is_some() || args.report.is_some() {
+        let named = common::named_paths(&args.program.cell);
         output::refuse_inputs(
             &[("--trajectory", args.trajectory.as_ref()), ("--report", args.report.as_ref())],
-            job.read_paths(),
+            job.read_paths().chain(named.iter().map(PathBuf::as_path)),
         )?;
         let rows = simulation.cycle_s / STEP;
         if rows > MAX_ROWS {

@@ -4,7 +4,7 @@
 use super::files::Source;
 use super::guards::one_line;
 use crate::rapid::builtins::{self, Effect, Setting, instruction};
-use crate::rapid::ir::hir::{Arg, Block, Call, Callee, Expr, Routine, Stmt, StmtKind};
+use crate::rapid::ir::hir::{Arg, ArgKind, Block, Call, Callee, Expr, Routine, Stmt, StmtKind};
 use crate::rapid::ir::program::{Program, Symbol};
 use crate::rapid::text::{Charset, Edit, Span, charset};
 use crate::tool::emit::{Names, Recorded};
@@ -121,9 +121,12 @@ fn changes(program: &Program, module: usize, key: &str, call: &Call) -> Vec<Chan
         Effect::Setting(Setting::GripLoad) => {
             let data = match name.and_then(|name| program.resolve(module, name)) {
                 Some(Symbol::Data(id)) => Some(program.data(id).type_name.key.as_str()),
-                _ => None,
+                _ => name.filter(|name| *name == "load0").map(|_| "loaddata"),
             };
+            let is_by_name = call.args.iter().any(|arg| matches!(arg.kind, ArgKind::Optional(..)));
             match (instruction.name, data, first) {
+                // The name of the object is computed.
+                _ if is_by_name => vec![Change::Switch(instruction.name, true)],
                 ("GripLoad", _, Some(load)) | (_, Some("loaddata"), Some(load)) => {
                     vec![Change::Load(load.span)]
                 }

@@ -334,21 +334,11 @@ impl Executor<'_> {
     /// makes all of it unknown.
     pub(super) fn write(&mut self, cell: CellId, target: &Expr, datum: Datum) -> bool {
         let type_key = self.cells[cell].value.type_key.clone();
-        let place = self.place(target, &type_key).map(|(indices, _)| indices);
-        self.write_at(cell, place.as_deref(), target, datum)
-    }
-
-    /// The same at these component indices.
-    pub(super) fn write_at(
-        &mut self,
-        cell: CellId,
-        place: Option<&[usize]>,
-        target: &Expr,
-        datum: Datum,
-    ) -> bool {
+        let place = self.place(target, &type_key);
+        self.cells[cell].writes += 1;
         let slot = &mut self.cells[cell].value.datum;
-        if let Some(indices) = place {
-            return store(slot, indices, datum);
+        if let Some((indices, _)) = place {
+            return store(slot, &indices, datum);
         }
         let name = target.base().map_or("", |name| name.text.as_str());
         let reason = format!("it was written at a place in '{name}' not known");
@@ -396,7 +386,7 @@ pub(super) fn declared_twice(name: &str) -> String {
 }
 
 /// Writes a part of a value; true if this changed it.
-fn store(slot: &mut Datum, indices: &[usize], value: Datum) -> bool {
+pub(super) fn store(slot: &mut Datum, indices: &[usize], value: Datum) -> bool {
     match indices {
         [] if *slot == value => false,
         [] => {

@@ -48,12 +48,21 @@ pub(super) struct Cell {
     pub(super) read_only: bool,
     /// An input that the value depends on.
     pub(super) input: Option<Arc<str>>,
+    /// Counts the statements that wrote to it.
+    pub(super) writes: u64,
 }
 
 impl Cell {
     /// A cell that can be written, with a value that depends on no input.
     pub(super) fn new(value: Value, reading: Origin) -> Cell {
-        Cell { value, reading, history: Origin::default(), read_only: false, input: None }
+        Cell {
+            value,
+            reading,
+            history: Origin::default(),
+            read_only: false,
+            input: None,
+            writes: 0,
+        }
     }
 }
 

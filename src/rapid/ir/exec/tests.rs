@@ -245,6 +245,24 @@ fn parts_are_passed_by_reference() {
         events("pVar:=p10; add pVar.trans.x; MoveL pVar, v100, fine, tool0;"),
         ["MoveL 110.0"]
     );
+    // Indices are evaluated once.
+    let next = "FUNC num next(INOUT num n) n:=n+1; RETURN n; ENDFUNC";
+    let (events_of_next, _) = executed_with(
+        &format!("{declarations} {next}"),
+        "nKey:=1; add list{next(nKey)}; SetGO goX, list{2}; SetGO goY, nKey;",
+        0,
+    );
+    assert_eq!(events_of_next, ["SetGO goX=12", "SetGO goY=2"]);
+    // What is read or written by both names is not known, and neither is a part that is not known.
+    for (routine, call) in [
+        ("PROC both(INOUT num x) x:=5; IF list{2}=5 Set doA; ENDPROC", "both list{2};"),
+        ("PROC both(INOUT num x) list{1}:=7; x:=5; ENDPROC", "both list{2}; IF list{1}=7 Set doA;"),
+        ("PROC both(INOUT num x) x:=5; ENDPROC", "both list{foreign()}; IF list{1}=1 Set doA;"),
+    ] {
+        let (_, reasons) = executed_with(&format!("{declarations} {routine}"), call, 0);
+        let of_condition = |reason: &String| reason.contains("condition is not known");
+        assert!(reasons.iter().any(of_condition), "{routine}: {reasons:?}");
+    }
     // An argument by value stays.
     assert_eq!(
         events("pVar:=p10; outer \\dx:=5; MoveL pVar, v100, fine, tool0;"),
