@@ -16,6 +16,9 @@ use crate::rapid::builtins::MoveForm;
 use crate::rapid::ir::movement::{Movement, Settings};
 use crate::retime::path::{Leg, LegKind, build};
 
+/// Shortest time of a point that is planned, s: a shorter one overflows, and is exceeded anyway.
+const SHORTEST: f64 = 1e-6;
+
 /// The motion of a run.
 pub(super) struct Planned {
     /// Motions with their start in the run, s.
@@ -62,7 +65,8 @@ impl RunDraft {
         if self.movements.iter().any(|movement| movement.form != MoveForm::AbsJ) {
             return None;
         }
-        let intervals: Option<Vec<f64>> = self.times.iter().copied().collect();
+        let planned = |time: &Option<f64>| time.map(|time| time.max(SHORTEST));
+        let intervals: Option<Vec<f64>> = self.times.iter().map(planned).collect();
         // Distances between points only: the start position does not limit zones of later points.
         for pair in self.legs.windows(2) {
             let apart = pair[1].target.translation.vector - pair[0].target.translation.vector;
