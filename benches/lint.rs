@@ -22,21 +22,32 @@ const DATA: &str = "\
         [9E9,9E9,9E9,9E9,9E9,9E9]];
 ";
 
-fn one_of<'a>(random: &mut fastrand::Rng, choices: &[&'a str]) -> &'a str {
-    choices[random.usize(..choices.len())]
+/// Reproducible pseudo-random numbers.
+struct Numbers(u64);
+
+impl Numbers {
+    /// From 0 to `most` − 1.
+    fn below(&mut self, most: u64) -> u64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963);
+        (self.0 >> 33) % most
+    }
+
+    fn one_of<'a>(&mut self, choices: &[&'a str]) -> &'a str {
+        choices[self.below(choices.len() as u64) as usize]
+    }
 }
 
 /// A program that picks and places parts.
 fn program(index: usize) -> String {
-    let mut random = fastrand::Rng::with_seed(index as u64);
+    let mut numbers = Numbers(index as u64);
     let mut text = format!("MODULE Cell{index}\n{DATA}    PROC main()\n");
     text += "        MoveAbsJ jHome,v1000,fine,tGripper;\n";
     for part in 0..9 {
-        let speed = one_of(&mut random, &["v300", "v500", "v800", "v1000", "v1500", "v2000"]);
-        let slow = one_of(&mut random, &["v100", "v200", "v300"]);
+        let speed = numbers.one_of(&["v300", "v500", "v800", "v1000", "v1500", "v2000"]);
+        let slow = numbers.one_of(&["v100", "v200", "v300"]);
         for (target, grip) in [("pA", "GripLoad loadPart"), ("pB", "GripLoad load0")] {
-            let (x, y) = (random.u32(..110), random.u32(..90));
-            let zone = one_of(&mut random, &["fine", "z5", "z10", "z10", "z20", "z50"]);
+            let (x, y) = (numbers.below(110), numbers.below(90));
+            let zone = numbers.one_of(&["fine", "z5", "z10", "z10", "z20", "z50"]);
             let over = format!("Offs({target},{x}-55,{y}-45,150)");
             let _ = write!(
                 text,

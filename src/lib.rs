@@ -203,6 +203,7 @@ pub mod retime;
 #[doc(hidden)]
 pub mod tool;
 
+/// Vectors, matrices and poses of the public types.
 pub use nalgebra;
 pub use tool::cli::command_line;
 

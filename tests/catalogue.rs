@@ -46,7 +46,10 @@ fn every_robot_states_its_sources_and_has_consistent_data() {
 
 #[test]
 fn a_written_robot_is_read_as_the_same_robot() {
-    for model in robots() {
+    let text = "extends = \"IRB6640-180/2.55\"\nname = \"own\"\n[controller]\nramp_core = 0.5\nclosing = 0.2";
+    let own = from_toml("own.toml", text).unwrap();
+    assert_eq!((own.controller.ramp_core, own.controller.closing), (Some(0.5), Some(0.2)));
+    for model in robots().chain([own]) {
         let name = &model.name;
         let read = from_toml("written.toml", &to_toml(&model)).unwrap();
         assert_eq!(read.limits, model.limits, "{name}");
@@ -57,6 +60,10 @@ fn a_written_robot_is_read_as_the_same_robot() {
         assert_eq!(read.drive, model.drive, "{name}");
         assert_eq!(read.brakes, model.brakes, "{name}");
         assert_eq!(read.wrist, model.wrist, "{name}");
+        assert_eq!(read.standstill, model.standstill, "{name}");
+        assert_eq!(read.sensors, model.sensors, "{name}");
+        assert_eq!(read.effects.len(), model.effects.len(), "{name}");
+        assert_eq!([read.mass, read.payload], [model.mass, model.payload], "{name}");
     }
 }
 

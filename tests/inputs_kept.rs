@@ -1,4 +1,4 @@
-//! No command writes its output over a file that it reads.
+//! No command writes its output over a file that it was given.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -29,6 +29,7 @@ fn inputs_are_never_overwritten() {
         ("log.csv", log()),
         ("own.toml", robot.to_owned()),
         ("joulepath.toml", "entry = \"main\"\n".to_owned()),
+        ("arm.urdf", "<robot name=\"arm\"/>".to_owned()),
     ];
     for (name, text) in &inputs {
         fs::write(folder.path().join(name), text).unwrap();
@@ -38,10 +39,14 @@ fn inputs_are_never_overwritten() {
         "simulate p.mod --robot own.toml --report own.toml",
         "simulate p.mod --robot own.toml --report new.html --trajectory new.html",
         "optimize p.mod --robot own.toml --report ./p.mod",
+        "optimize p.mod --robot own.toml --report own.toml",
         "optimize p.mod --robot own.toml --report joulepath.toml",
         "simulate p.mod --robot own.toml --trajectory joulepath.toml",
         "lint p.mod --robot own.toml --write-baseline joulepath.toml",
         "diagnose --robot own.toml --log log.csv --program p.mod --report p.mod",
+        "diagnose --robot own.toml --log log.csv --program . --report p.mod",
+        "calibrate p.mod --robot own.toml --log log.csv --out joulepath.toml",
+        "robots import arm.urdf --out arm.urdf",
         "lint p.mod --robot own.toml --write-baseline p.mod",
         "lint p.mod --robot own.toml --write-baseline own.toml",
         "predict --robot own.toml --log log.csv --out log.csv",

@@ -57,7 +57,7 @@ fn syntax_errors_are_noted() {
     let output = joulepath_in(folder.path(), &["lint", "."]);
     let note = "Broken.mod:5: expected ENDIF";
     let message = stderr(&output);
-    assert!(message.contains(note) && message.contains("not linted"), "{message}");
+    assert!(message.contains(note) && message.contains("are not linted"), "{message}");
     assert!(!stderr(&joulepath_in(folder.path(), &["lint", "Cell.mod"])).contains("not linted"));
 }
 

@@ -153,6 +153,28 @@ fn undo_restores_every_byte() {
     refused(&["optimize", cell.to_str().unwrap(), "--undo"], "nothing to undo");
 }
 
+/// A second change in place replaces the undo folder, and no folder that the user has.
+#[test]
+fn a_new_undo_folder_replaces_the_old_one_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let cell = folder.path().join("cell");
+    fs::create_dir(&cell).unwrap();
+    fs::copy("fixtures/hard/waits.mod", cell.join("waits.mod")).unwrap();
+    let before = files(&cell);
+    let own = folder.path().join("cell.older/notes.txt");
+    fs::create_dir(own.parent().unwrap()).unwrap();
+    fs::write(&own, "mine").unwrap();
+    let path = cell.to_str().unwrap();
+    for command in ["optimize", "refresh"] {
+        run(&[command, path, "--robot", "IRB1600-10/1.45", "--in-place", "--quiet"]);
+    }
+    assert_eq!(fs::read_to_string(&own).unwrap(), "mine");
+    let left = files(folder.path()).into_keys().filter(|name| name.contains("undo.older"));
+    assert_eq!(left.count(), 0);
+    run(&["optimize", path, "--undo"]);
+    assert_eq!(files(&cell), before);
+}
+
 #[test]
 fn undo_is_refused_after_an_edit() {
     let folder = tempfile::tempdir().unwrap();

@@ -114,7 +114,7 @@ fn streams_whose_data_may_change_are_removed() {
     let folder = tempfile::tempdir().unwrap();
     let cell = cell(folder.path(), "cell", "", "");
     done(&["optimize", "--in-place"], &cell);
-    // From here on another task may write the target of the movement.
+    // From here on an interrupt routine may write the target of the movement.
     edit(&cell.join("CellData.mod"), "CONST robtarget", "PERS robtarget");
     edit(&cell.join("CellData.mod"), "CONST jointtarget", "PERS jointtarget");
     let trap = "TRAP tMove\r\n pNest.trans.z:=800; jHome.robax.rax_1:=1;\r\nENDTRAP\r\nENDMODULE";

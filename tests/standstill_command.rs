@@ -112,10 +112,7 @@ fn missing_or_wrong_arguments_are_refused() {
         (vec!["--pose", pose], "--robot NAME"),
         (vec!["--robot", "IRB1600-10/1.45", "--pose", "0,0,0"], "six axis positions"),
         (vec!["--robot", "IRB1600-10/1.45", "--pose", "0,0,0,0,0,900"], "joint 6"),
-        (
-            vec!["--robot", "IRB1600-10/1.45", "--pose", "1e300,0,0,0,0,0"],
-            "give six axis positions in degrees",
-        ),
+        (vec!["--robot", "IRB1600-10/1.45", "--pose", "1e300,0,0,0,0,0"], "at 1.000e300 deg"),
         (vec!["--robot", "IRB1600-10/1.45"], "--pose DEG"),
     ] {
         refused(&[&["standstill"], &args[..]].concat(), way_out);

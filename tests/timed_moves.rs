@@ -250,8 +250,23 @@ fn joints_keep_their_speed_limits_near_a_singularity() {
     assert!(fastest > 0.9, "no joint was fast: {fastest}");
 }
 
+/// A time that no robot keeps lengthens its own points alone.
 #[test]
-fn a_very_slow_move_is_simulated() {
+fn times_that_are_far_too_short_leave_the_other_points() {
+    for time in ["1E-3", "1E-6", "1E-200"] {
+        let point = |(i, time): (usize, &str)| {
+            format!("MoveAbsJ [[{},0,0,0,60,0],{NONE}],v1000\\T:={time},z200,tool0;\n", 5 * (i + 1))
+        };
+        let times = ["1", "1", time, time, time, "1", "1"].into_iter().enumerate();
+        let body: String = times.map(point).collect();
+        let simulation = run(&body);
+        assert!(simulation.cycle_s < 5.0, "{time}: {}", simulation.cycle_s);
+    }
+}
+
+/// The samples of a motion do not follow its duration.
+#[test]
+fn a_move_of_many_days_takes_no_more_work() {
     let body = line([850., 100., 700.], "v1000", "fine")
         + &line([850., 300., 700.], "v1000\\T:=10000000", "fine");
     let simulation = run(&body);

@@ -379,3 +379,37 @@ fn movements_with_arguments_that_may_fail_are_kept_under_an_error_handler() {
         assert_eq!(is_told, expected, "{last} {handler}: {reported:?}");
     }
 }
+
+/// A guard compares what cannot be read back: the program records it after each change.
+#[test]
+fn changes_that_cannot_be_read_back_are_recorded() {
+    let there = target(50.0);
+    let [first, rest @ ..] = &there_and_back()[..] else { unreachable!("three movements") };
+    let branch = "IF diX=1 THEN\nEOffsSet eOff;\nEOffsOn \\ExeP:=pHere,pHere;\nSpeedLimAxis ROB_1,1,10;\n\
+        SetSysData heavy;\nSetSysData heavy \\ObjectName:=\"other\";\nSetSysData load0;\n\
+        SetSysData tool0;\nENDIF\nIF diX=2 EOffsOff;";
+    let text = format!(
+        "MODULE M\nCONST robtarget pHere:={there};\nCONST extjoint eOff:=[0,0,0,0,0,0];\n\
+         PERS loaddata heavy:=[8,[0,0,100],[1,0,0,0],0,0,0];\n\
+         PROC main()\n{first}\n{branch}\n{}\nENDPROC\nENDMODULE\n",
+        rest.join("\n")
+    );
+    let (folder, path) = module(text);
+    let out = folder.path().join("out");
+    let result = optimize_with(Path::new(&path), &out, &[]);
+    let is_rewritten = |segment: &Value| segment["rewritten"] == true;
+    assert!(result["segments"].as_array().unwrap().iter().any(is_rewritten), "{result}");
+    let text = fs::read_to_string(out.join("m.mod")).unwrap();
+    for recorded in [
+        "EOffsSet eOff; jpEOffsSet:=TRUE;\n",
+        "pHere,pHere; jpEOffsOn:=TRUE;\n",
+        "SpeedLimAxis ROB_1,1,10; jpSpeedLimAxis:=TRUE;\n",
+        "SetSysData heavy; jpLoad:=heavy;\n",
+        "\\ObjectName:=\"other\"; jpSetSysData:=TRUE;\n",
+        "SetSysData load0; jpLoad:=load0;\n",
+        "SetSysData tool0;\n",
+        "IF diX=2 THEN EOffsOff; jpEOffsSet:=FALSE; jpEOffsOn:=FALSE; ENDIF\n",
+    ] {
+        assert!(text.contains(recorded), "{text}\nlacks {recorded}");
+    }
+}

@@ -44,13 +44,14 @@ pub(crate) fn run_in(folder: &Path, args: &[&str]) -> Output {
     output
 }
 
-/// Runs `joulepath`, which has to refuse the input with exit code 2 and a message that contains
-/// `way_out`. Returns the message.
+/// Runs `joulepath`, which has to refuse the input with exit code 2 a message that contains
+/// `way_out`, and nothing on standard output. Returns the message.
 pub(crate) fn refused(args: &[&str], way_out: &str) -> String {
     let output = joulepath(args);
     let message = stderr(&output);
     assert_eq!(output.status.code(), Some(2), "{args:?}: {message}");
     assert!(message.contains(way_out), "{args:?}: {message}\nlacks {way_out}");
+    assert!(output.stdout.is_empty(), "{args:?}");
     message
 }
 

@@ -70,9 +70,13 @@ fn arrays_that_do_not_fit_are_refused() {
     let short: Vec<Vec<f64>> = tau.iter().map(|tau| tau[..3].to_vec()).collect();
     let mut not_finite = tau.clone();
     not_finite[2][7] = f64::NAN;
-    for wrong in [&[][..], &tau[..5], &short, &not_finite] {
-        let refused = prepare(&log, wrong, Hints::default()).err();
-        assert!(matches!(refused, Some(IdentifyError::Torques { .. })), "{refused:?}");
+    for (wrong, expected) in [
+        (&[][..], IdentifyError::Torques { joints: 0, logged: 6 }),
+        (&tau[..5], IdentifyError::Torques { joints: 5, logged: 6 }),
+        (&short, IdentifyError::TorqueRows { joint: 1, rows: 3, logged: log.time().len() }),
+        (&not_finite, IdentifyError::NotFinite { joint: 3, row: 8 }),
+    ] {
+        assert_eq!(prepare(&log, wrong, Hints::default()).err(), Some(expected));
     }
     let mut other = prepare(&log, &tau, Hints::default()).unwrap();
     other.rest.pop();

@@ -11,11 +11,11 @@ What `joulepath lint` finds, from the rules' own files (`src/tool/lint/rules`); 
 shows one of them. A test keeps this page fresh.
 
 **Savings** are the difference of two simulated cycles, with and without the change that the
-message names. They are told per simulated cycle. The interval holds what the change saves in 90 % of
+message names. They are given per simulated cycle. The interval holds what the change saves in 90 % of
 the robots that are as plausible as the one given (docs/energy.md): it is wide for an estimated
-robot, narrow for an identified or a calibrated one. Without a robot, without dynamics, and where the
-cycle does not come by, nothing is told: `saving_j` is null. Findings whose saving is below the
-threshold (1 J, `--threshold`, or `[lint]` of the configuration) are not told, and neither is a
+robot, narrow for an identified or a calibrated one. Without a robot, without dynamics, and for
+statements that the simulated cycle does not run, no saving is given: `saving_j` is null. Findings whose saving is below the
+threshold (1 J, `--threshold`, or `[lint]` of the configuration) are not reported, and neither is a
 change that saves nothing or whose interval reaches below zero.
 
 **Fixes** are *safe* where path, order and end points provably stay, else *unsafe*. `--fix` applies

@@ -17,6 +17,7 @@ mod rigid_body;
 mod scale;
 mod transmission;
 mod waves;
+mod window;
 
 pub use applied::{
     applied, drawn, from_toml, load, load_estimated, of_the_whole_motion, with_estimates,

@@ -11,7 +11,7 @@ const MIN_RAMP_S: f64 = 0.01;
 /// Largest acceleration of a joint of unknown speed \[rad/s²\].
 const MAX_ACCELERATION: f64 = 500.0;
 /// Largest bound of a joint that is neither endless nor the last \[rad\].
-const MAX_BOUND: f64 = 13.0;
+const PLAUSIBLE_BOUND: f64 = 13.0;
 /// Longest chain of joints \[m\].
 const MAX_LENGTH: f64 = 10.0;
 
@@ -27,7 +27,7 @@ pub fn implausible(model: &Model) -> Vec<String> {
     let limits = &model.limits;
     for (i, range) in limits.position.iter().enumerate().take(model.dof.saturating_sub(1)) {
         let bound = range[0].abs().max(range[1].abs());
-        if bound > MAX_BOUND && !is_endless(bound) {
+        if bound > PLAUSIBLE_BOUND && !is_endless(bound) {
             found.push(format!(
                 "limits.position of joint {}: up to {bound} rad are {:.0} deg; give radians",
                 i + 1,

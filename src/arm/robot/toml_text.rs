@@ -1,4 +1,4 @@
-//! Values in TOML notation. `toml_edit` writes numbers without an exponent: 1e-34 takes 36
+//! Values in TOML notation, numbers with an exponent: `toml_edit` writes 1e-34 without one, in 36
 //! characters.
 
 use std::fmt::Write;

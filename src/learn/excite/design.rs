@@ -14,8 +14,8 @@ use crate::arm::dynamics::{
 use crate::arm::kinematics::{Body, Obstacle};
 use crate::arm::robot::Model;
 
-use super::error::{ExciteError, rate_limits};
-use super::feasible::{Checked, Ratios, check};
+use super::error::ExciteError;
+use super::feasible::{Checked, Ratios, check, rate_limits};
 use super::information::{Information, Normal, information, log_det};
 use super::plateaus::pose;
 use super::search::maximise;
@@ -23,7 +23,7 @@ use super::series::{Series, State};
 
 /// Sampled states for each period of the fastest harmonic.
 const STATES: usize = 10;
-/// Factor of the number of states in the strict check.
+/// Factor of the number of states in the check between the states of the objective.
 const FINER: usize = 4;
 /// Random motions from which the best starts are chosen.
 const TRIED: usize = 300;
@@ -127,7 +127,7 @@ pub fn design(
         .map(|x| {
             let mut work = Work::new(&problem);
             let x = problem.shrunk(&mut work, x);
-            (problem.value(&mut work, &x, PENALTIES[1], false), x)
+            (problem.value(&mut work, &x, PENALTIES[1], 1), x)
         })
         .collect();
     rated.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -142,13 +142,13 @@ pub fn design(
                 progress(count.min(STARTS * ROUNDS), STARTS * ROUNDS);
             };
             let [first, heavier @ ..] = PENALTIES;
-            let mut value = |x: &DVector<f64>| problem.value(&mut work, x, first, false);
+            let mut value = |x: &DVector<f64>| problem.value(&mut work, x, first, 1);
             let (mut found, _) = maximise(start.clone(), ROUNDS, &mut value, &step);
             for weight in heavier {
-                if problem.excess(&mut work, &found) == 0.0 {
+                if problem.excess(&mut work, &found, FINER) == 0.0 {
                     break;
                 }
-                let mut value = |x: &DVector<f64>| problem.value(&mut work, x, weight, true);
+                let mut value = |x: &DVector<f64>| problem.value(&mut work, x, weight, FINER);
                 found = maximise(found, ROUNDS / 2, &mut value, &|| ()).0;
             }
             found
@@ -307,24 +307,20 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Size of the limit violations of a motion.
-    fn excess(&self, work: &mut Work<'_>, x: &DVector<f64>) -> f64 {
-        self.excess_of(work, &self.series(x).sampled(FINER * self.states))
-    }
-
-    fn excess_of(&self, work: &mut Work<'_>, states: &[State]) -> f64 {
-        let mut checked = check(self.model, &work.body, &self.settings.load, states);
+    /// Size of the limit violations of a motion at `finer` times the states of the objective.
+    fn excess(&self, work: &mut Work<'_>, x: &DVector<f64>, finer: usize) -> f64 {
+        let states = self.series(x).sampled(finer * self.states);
+        let mut checked = check(self.model, &work.body, &self.settings.load, &states);
         checked.to_obstacles -= ROOM;
         checked.to_itself -= ROOM;
         checked.excess(&self.shares)
     }
 
-    /// Objective: log det, less penalties of poor condition and of limit violations at the states;
-    /// `strict` includes violations between the states.
-    fn value(&self, work: &mut Work<'_>, x: &DVector<f64>, penalty: f64, strict: bool) -> f64 {
+    /// Objective: log det, less penalties of poor condition and of limit violations at `finer` times
+    /// its states.
+    fn value(&self, work: &mut Work<'_>, x: &DVector<f64>, penalty: f64, finer: usize) -> f64 {
         let states = self.series(x).sampled(self.states);
-        let excess = if strict { self.excess(work, x) } else { self.excess_of(work, &states) };
-        told(work, x, &states) - penalty * excess
+        told(work, x, &states) - penalty * self.excess(work, x, finer)
     }
 
     /// A motion of the same shape, reduced until it keeps all limits, if possible.
@@ -335,7 +331,7 @@ impl<'a> Problem<'a> {
             .map(|size| {
                 DVector::from_fn(x.len(), |k, _| if k % count == 0 { x[k] } else { size * x[k] })
             })
-            .find(|smaller| self.excess(work, smaller) == 0.0)
+            .find(|smaller| self.excess(work, smaller, FINER) == 0.0)
             .unwrap_or(x)
     }
 

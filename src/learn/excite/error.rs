@@ -2,8 +2,6 @@
 
 use thiserror::Error;
 
-use crate::arm::robot::Model;
-
 /// Error of the design of an excitation motion.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum ExciteError {
@@ -25,14 +23,4 @@ pub enum ExciteError {
         "no test of at least 1.7 degrees keeps joint ranges, half of the speed and acceleration limits, clear of the floor and of the arm around this pose: give another --start"
     )]
     NoRoom,
-}
-
-/// The largest speeds and accelerations of the joints.
-pub(super) fn rate_limits(model: &Model) -> Result<[&[f64]; 2], ExciteError> {
-    let limits = &model.limits;
-    let lacks = |what| ExciteError::Lacks { name: model.name.clone(), what };
-    let velocity = limits.velocity.as_deref().ok_or_else(|| lacks("joint speeds"))?;
-    let acceleration =
-        limits.acceleration.as_deref().ok_or_else(|| lacks("joint accelerations"))?;
-    Ok([velocity, acceleration])
 }

@@ -4,7 +4,21 @@ use crate::arm::dynamics::{Data, Load, torque};
 use crate::arm::kinematics::Body;
 use crate::arm::robot::Model;
 
+use super::error::ExciteError;
 use super::series::State;
+
+/// Limits of the joints' speeds \[rad/s\] and accelerations \[rad/s²\].
+///
+/// # Errors
+/// The robot lacks one.
+pub(super) fn rate_limits(model: &Model) -> Result<[&[f64]; 2], ExciteError> {
+    let limits = &model.limits;
+    let lacks = |what| ExciteError::Lacks { name: model.name.clone(), what };
+    let velocity = limits.velocity.as_deref().ok_or_else(|| lacks("joint speeds"))?;
+    let acceleration =
+        limits.acceleration.as_deref().ok_or_else(|| lacks("joint accelerations"))?;
+    Ok([velocity, acceleration])
+}
 
 /// Largest ratios of a motion's values to the limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -3,7 +3,8 @@
 use crate::arm::kinematics::Body;
 use crate::arm::robot::{MAX_DOF, Model};
 
-use super::error::{ExciteError, rate_limits};
+use super::error::ExciteError;
+use super::feasible::rate_limits;
 use super::series::State;
 
 /// Number of speeds for each joint, equally spaced in their logarithm.

@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use super::error::{ExciteError, rate_limits};
-use super::feasible::check;
+use super::error::ExciteError;
+use super::feasible::{check, rate_limits};
 use super::series::State;
 use crate::arm::dynamics::Load;
 use crate::arm::kinematics::Body;

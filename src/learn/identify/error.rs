@@ -22,18 +22,30 @@ pub enum IdentifyError {
         unknowns: usize,
     },
     /// Torques that do not fit the log.
-    #[error(
-        "{joints} series of torques, the shortest of {rows} rows: give one of {logged} rows for each of {wanted} joints, each value finite"
-    )]
+    #[error("{joints} series of torques for {logged} joints: give one for each joint")]
     Torques {
         /// Number of series.
         joints: usize,
-        /// Rows of the shortest one.
+        /// Joints of the log.
+        logged: usize,
+    },
+    /// A series of torques that does not fit the log.
+    #[error("tau{joint} has {rows} values, the log {logged} rows: give one for each row")]
+    TorqueRows {
+        /// Joint number, from 1.
+        joint: usize,
+        /// Values of the series.
         rows: usize,
         /// Rows of the log.
         logged: usize,
-        /// Joints of the log.
-        wanted: usize,
+    },
+    /// A torque that is not finite.
+    #[error("tau{joint} is not a finite number in row {row}: leave the row out")]
+    NotFinite {
+        /// Joint number, from 1.
+        joint: usize,
+        /// Row of the log, from 1.
+        row: usize,
     },
     /// The log is of another robot.
     #[error(
@@ -86,7 +98,7 @@ pub enum IdentifyError {
     /// Rates that differ from those of the positions by a factor.
     #[error(
         "qd{joint} is {factor:.3} times the rate of q{joint}{}",
-        factor_hint("qd", *factor, *joint)
+        rates_hint(*factor, *joint)
     )]
     Rates {
         /// Joint number, from 1.
@@ -97,7 +109,7 @@ pub enum IdentifyError {
     /// Accelerations that differ from those of the rates by a factor.
     #[error(
         "qdd{joint} is {factor:.3} times the change of qd{joint}{}",
-        factor_hint("qdd", *factor, *joint)
+        unit_hint("qdd", *factor, *joint)
     )]
     Accelerations {
         /// Joint number, from 1.
@@ -180,22 +192,29 @@ pub enum IdentifyError {
     Sign(usize),
 }
 
+/// Degrees in a radian.
+const DEGREES: f64 = 180.0 / std::f64::consts::PI;
+
 /// Whether a factor is near another one.
 fn near(factor: f64, other: f64) -> bool {
     factor > 0.0 && (factor / other).ln().abs() < 0.2
 }
 
-/// Probable cause of a factor between the rates (`qd`) or accelerations (`qdd`) of a column and its
-/// differentiated ones.
-fn factor_hint(column: &str, factor: f64, joint: usize) -> String {
-    let degrees = 180.0 / std::f64::consts::PI;
-    let are_rates = column == "qd";
-    if near(factor, degrees) {
-        format!(": it seems to be in degrees; name the column {column}{joint}_deg")
-    } else if are_rates && near(factor, 1.0 / degrees) {
+/// Probable cause of a factor between logged and differentiated rates.
+fn rates_hint(factor: f64, joint: usize) -> String {
+    if near(factor, 1.0 / DEGREES) {
         format!(": the positions seem to be in degrees; name the column q{joint}_deg")
-    } else if are_rates && [1e3, 1e6, 1e9].iter().any(|other| near(factor, *other)) {
+    } else if [1e3, 1e6, 1e9].iter().any(|other| near(factor, *other)) {
         format!(": the time seems to be in {}; give t in s", below_a_second(factor))
+    } else {
+        unit_hint("qd", factor, joint)
+    }
+}
+
+/// Probable cause of a factor between logged values of a column and differentiated ones.
+fn unit_hint(column: &str, factor: f64, joint: usize) -> String {
+    if near(factor, DEGREES) {
+        format!(": it seems to be in degrees; name the column {column}{joint}_deg")
     } else if factor < 0.0 {
         ": it has the opposite sign; multiply it by -1, or leave the column out".into()
     } else {

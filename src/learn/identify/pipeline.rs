@@ -30,7 +30,7 @@ pub fn identify(
     validation: &[Samples],
     settings: &Settings,
 ) -> Result<Identified, IdentifyError> {
-    check(model, training, validation, settings)?;
+    check_inputs(model, training, validation, settings)?;
     let (among, known) = free_parameters(settings.free, model.dof);
     let mut nominal = model.clone();
     let among_base = |model: &Model| base_parameters_among(model, &among);
@@ -108,7 +108,7 @@ pub fn identify(
 }
 
 /// Refuses logs of another robot, and a model without the parameters that stay.
-fn check(
+fn check_inputs(
     model: &Model,
     training: &Samples,
     validation: &[Samples],

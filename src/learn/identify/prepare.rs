@@ -50,15 +50,17 @@ pub struct Hints {
 /// Torques that do not fit the log, no joint moves, or the log is too short for a filter.
 pub fn prepare(log: &Log, tau: &[Vec<f64>], hints: Hints) -> Result<Samples, IdentifyError> {
     let (joints, rows) = (log.joints(), log.time().len());
-    let fits = |series: &Vec<f64>| series.len() == rows && series.iter().all(|tau| tau.is_finite());
-    if tau.len() != joints || !tau.iter().all(fits) {
-        let shortest = tau.iter().map(Vec::len).min().unwrap_or(0);
-        return Err(IdentifyError::Torques {
-            joints: tau.len(),
-            rows: shortest,
-            logged: rows,
-            wanted: joints,
-        });
+    if tau.len() != joints {
+        return Err(IdentifyError::Torques { joints: tau.len(), logged: joints });
+    }
+    for (number, series) in (1..).zip(tau) {
+        if series.len() != rows {
+            let logged = rows;
+            return Err(IdentifyError::TorqueRows { joint: number, rows: series.len(), logged });
+        }
+        if let Some(row) = series.iter().position(|tau| !tau.is_finite()) {
+            return Err(IdentifyError::NotFinite { joint: number, row: row + 1 });
+        }
     }
     let q = owned(log, Channel::Position).unwrap_or_default();
     let (qd, qdd) = (owned(log, Channel::Velocity), owned(log, Channel::Acceleration));

@@ -12,16 +12,18 @@ impl Log {
     /// [`rejected`](Log::rejected). Rows count from 1.
     ///
     /// # Errors
-    /// Columns of different lengths, no time, a missing joint, fewer than [`MIN_ROWS`](super::MIN_ROWS) usable rows.
+    /// Columns of different lengths, no time, a missing joint, fewer than
+    /// [`MIN_ROWS`](super::MIN_ROWS) usable rows.
     pub fn from_columns(columns: &[(&str, &[f64])]) -> Result<Log, LogError> {
         let map = ColumnMap::default();
         let names: Vec<String> = columns.iter().map(|(name, _)| (*name).to_owned()).collect();
         let known = recognised(&names, &map);
         check(&known, &names, &map)?;
         let mut rows = Rows::new(&known);
-        let count = columns.iter().map(|(_, values)| values.len()).max().unwrap_or(0);
-        if let Some((name, values)) = columns.iter().find(|(_, values)| values.len() != count) {
-            return Err(LogError::Lengths { name: (*name).into(), rows: values.len(), count });
+        let lengths = || known.iter().map(|column| columns[column.index].1.len());
+        let count = lengths().max().unwrap_or(0);
+        if let Some((column, rows)) = known.iter().zip(lengths()).find(|(_, rows)| *rows != count) {
+            return Err(LogError::Lengths { name: column.name.clone(), rows, count });
         }
         for row in 0..count {
             let value = |column: &super::columns::Column| match columns[column.index].1[row] {
@@ -55,5 +57,7 @@ mod tests {
         let ragged = Log::from_columns(&[("t", &t), ("q1", &q), ("tau1", &t[..19])]);
         let expected = LogError::Lengths { name: "tau1".into(), rows: 19, count: 20 };
         assert_eq!(ragged.err(), Some(expected));
+        // A column that is skipped may have any length.
+        assert!(Log::from_columns(&[("t", &t), ("q1", &t), ("note", &t[..3])]).is_ok());
     }
 }

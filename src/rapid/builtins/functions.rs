@@ -5,6 +5,9 @@ use super::function::Source::{
 };
 use super::function::{Function, calculated, calculated_dnum, from};
 
+const NEXT_MECH_UNIT: &str = "ListNumber= UnitName= \\MecRef= \\TCPRob= \\NoOfAxes= \\MecTaskNo= \
+    \\MotPlanNo= \\Active= \\DriveModule= \\OKToDeact=";
+
 /// Sorted by name, without regard to case.
 pub(in crate::rapid) const FUNCTIONS: &[Function] = &[
     calculated("Abs", "Value"),
@@ -36,8 +39,16 @@ pub(in crate::rapid) const FUNCTIONS: &[Function] = &[
     calculated("ByteToStr", "ByteData \\Hex \\Okt \\Bin \\Char"),
     from(Kinematics, "CalcJointT", "\\UseCurWObjPos Rob_target Tool \\WObj \\ErrorNumber="),
     from(Kinematics, "CalcRobT", "Joint_target Tool \\WObj"),
-    from(State, "CalcRotAxFrameZ", "TargetList TargetsInList PositiveZPoint MaxErr= MeanErr="),
-    from(Mounting, "CalcRotAxisFrame", "MechUnit \\AxisNo TargetList TargetsInList"),
+    from(
+        NotCalculated,
+        "CalcRotAxFrameZ",
+        "TargetList TargetsInList PositiveZPoint MaxErr= MeanErr=",
+    ),
+    from(
+        Mounting,
+        "CalcRotAxisFrame",
+        "MechUnit \\AxisNo TargetList TargetsInList MaxErr= MeanErr=",
+    ),
     from(Controller, "CDate", ""),
     from(Position, "CJointT", "\\TaskRef \\TaskName"),
     from(State, "ClkRead", "Clock \\HighRes"),
@@ -81,11 +92,7 @@ pub(in crate::rapid) const FUNCTIONS: &[Function] = &[
     from(Controller, "GetMecUnitName", "MechUnit"),
     from(Controller, "GetModalPayLoadMode", ""),
     from(Controller, "GetMotorTorque", "AxisNo"),
-    from(
-        State,
-        "GetNextMechUnit",
-        "ListNumber= UnitName= \\MecRef= \\TCPRob= \\NoOfAxes= \\MecTaskNo= \\MotPlanNo= \\Active= \\DriveModule= \\OKToDeact=",
-    ),
+    from(State, "GetNextMechUnit", NEXT_MECH_UNIT),
     from(State, "GetNextSym", "Object= Block= \\Recursive"),
     from(Controller, "GetServiceInfo", "MechUnit"),
     from(Controller, "GetSignalOrigin", "Signal SignalName="),
@@ -114,11 +121,11 @@ pub(in crate::rapid) const FUNCTIONS: &[Function] = &[
     from(Controller, "IsSysId", "SystemId"),
     from(Call, "IsVar", "DatObj"),
     from(NotCalculated, "Max", "Value1 Value2"),
-    from(State, "MaxExtLinearSpeed", ""),
-    from(State, "MaxExtReorientSpeed", ""),
-    from(State, "MaxRobReach", ""),
-    from(State, "MaxRobReorientSpeed", ""),
-    from(State, "MaxRobSpeed", ""),
+    from(Controller, "MaxExtLinearSpeed", ""),
+    from(Controller, "MaxExtReorientSpeed", ""),
+    from(Controller, "MaxRobReach", ""),
+    from(Controller, "MaxRobReorientSpeed", ""),
+    from(Controller, "MaxRobSpeed", ""),
     from(NotCalculated, "Min", "Value1 Value2"),
     from(NotCalculated, "MirPos", "Point MirPlane \\WObj \\MirY"),
     from(Controller, "ModExist", "ModuleName"),
@@ -133,8 +140,8 @@ pub(in crate::rapid) const FUNCTIONS: &[Function] = &[
     from(Controller, "OpMode", ""),
     calculated("OrientZYX", "ZAngle YAngle XAngle"),
     from(State, "ORobT", "OrgPoint \\InPDisp \\InEOffs"),
-    from(State, "ParIdPosValid", "ParIdType Pos AxValid="),
-    from(State, "ParIdRobValid", "ParIdType"),
+    from(Controller, "ParIdPosValid", "ParIdType Pos AxValid="),
+    from(Controller, "ParIdRobValid", "ParIdType"),
     from(Controller, "PathLengthGet", ""),
     from(Controller, "PathLevel", ""),
     from(State, "PathRecValidBwd", "\\ID"),
@@ -169,8 +176,8 @@ pub(in crate::rapid) const FUNCTIONS: &[Function] = &[
     from(Controller, "SocketPeek", "Socket"),
     calculated("Sqrt", "Value"),
     calculated_dnum("SqrtDnum", "Value"),
-    from(State, "STCalcForce", "ToolName MotorTorque"),
-    from(State, "STCalcTorque", "ToolName TipForce"),
+    from(Controller, "STCalcForce", "ToolName MotorTorque"),
+    from(Controller, "STCalcTorque", "ToolName TipForce"),
     from(State, "STIsCalib", "ToolName"),
     from(State, "STIsClosed", "ToolName"),
     from(NotCalculated, "StrDigCalc", "StrDig1 Operation StrDig2"),

@@ -136,6 +136,8 @@ pub enum Setting {
     PDispSet,
     /// `SingArea`
     SingArea,
+    /// `SetSysData`
+    SystemData,
     /// `SpeedRefresh`
     SpeedRefresh,
     /// `VelSet`

@@ -41,7 +41,7 @@ pub(super) const INSTRUCTIONS: &[Instruction] = &[
     setting("PDispSet", "DispFrame", Setting::PDispSet),
     plain("ResetAxisDistance", "MechUnit AxisNo"),
     plain("RestoPath", ""),
-    setting("SetSysData", "SourceObject \\ObjectName", Setting::GripLoad),
+    setting("SetSysData", "SourceObject \\ObjectName", Setting::SystemData),
     setting("SingArea", "\\Wrist \\LockAxis4 \\Arm \\Base \\Off", Setting::SingArea).on_the_fly(),
     unmodelled("SoftAct", "\\MechUnit Axis Softness \\Ramp"),
     plain("SoftDeact", "\\Ramp").effect(Ends(&["softact"])).changing_motion(),

@@ -9,7 +9,7 @@ use super::hir::{
     RoutineKind, Scope, Stmt, StmtKind, TypeDefKind,
 };
 use super::user;
-use super::walk::placed;
+use super::walk::arguments_with_places;
 use crate::rapid::builtins::{self, ArgumentPlace, DataType};
 use crate::rapid::text::Span;
 
@@ -277,7 +277,7 @@ impl RoutineScope<'_> {
         outside: impl Fn(ArgumentPlace<'_>) -> Option<Writer>,
     ) {
         let callee = name.and_then(|name| self.program.resolve(self.id.module, &name.key));
-        for (place, expr) in placed(args) {
+        for (place, expr) in arguments_with_places(args) {
             let writer = if let Some(Symbol::Routine(id)) = callee {
                 let params = &self.program.routine(id).params;
                 let index = match place {

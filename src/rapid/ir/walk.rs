@@ -1,4 +1,4 @@
-//! Walks over the tree of a program.
+//! Iterators over the statements, expressions and arguments of a program.
 
 use crate::rapid::builtins::ArgumentPlace;
 
@@ -71,7 +71,7 @@ impl StmtKind {
 }
 
 /// The arguments of a call with a value, each with its place.
-pub fn placed(args: &[Arg]) -> impl Iterator<Item = (ArgumentPlace<'_>, &Expr)> {
+pub fn arguments_with_places(args: &[Arg]) -> impl Iterator<Item = (ArgumentPlace<'_>, &Expr)> {
     let mut position = 0;
     args.iter().filter_map(move |arg| {
         let expr = arg.value()?;

@@ -17,15 +17,19 @@ const ROUNDING: f64 = 1e-3;
 const STEP: f64 = 0.03;
 /// Largest number of rounds.
 const ROUNDS: usize = 300;
-/// Largest ratio of the duration to that of a stream whose speeds and accelerations are near the
-/// limits: a torque beyond its limit at rest stays there at any speed.
+/// Largest ratio of the duration to that after [`Limits::within_reach`]: slower motion does not lower a
+/// torque that exceeds its limit at rest.
 const SLOWEST: f64 = 20.0;
+/// Ratio of the times that the robot needs to the given ones from which on they are lengthened at once.
+const FAR: f64 = 10.0;
+/// Share of the time that a displacement takes at the limits.
+const LEAST_SHARE: f64 = 0.2;
 
 /// The stream as the robot executes it; unchanged if it keeps all limits.
 pub(super) fn within_limits(loaded: Loaded<'_>, stream: Stream) -> Stream {
     let limits = Limits::new(loaded.model);
     let mut data = Data::new();
-    let mut late = limits.near(stream);
+    let mut late = limits.within_reach(stream);
     let longest = SLOWEST * late.duration();
     for _ in 0..ROUNDS {
         let factors: Vec<f64> =
@@ -60,19 +64,26 @@ impl Limits {
         }
     }
 
-    /// A stream whose times are far too short for the speeds and accelerations of the robot, slower as a
-    /// whole so that the rounds reach the limits; others unchanged.
-    fn near(&self, stream: Stream) -> Stream {
-        let excess = self.excess(&stream.max_velocity(), &stream.max_acceleration());
-        let slower = excess / (0.5 * SLOWEST);
-        if slower <= 1.0 {
+    /// The stream; where its speeds or accelerations are more than [`FAR`] times what the robot can do,
+    /// each interval has at least a share of the time that its displacement takes at the limits, so
+    /// that the rounds reach them.
+    fn within_reach(&self, stream: Stream) -> Stream {
+        if self.excess(&stream.max_velocity(), &stream.max_acceleration()) <= FAR {
             return stream;
         }
-        let intervals = stream.intervals().iter().map(|interval| interval * slower).collect();
+        let starts = std::iter::once(stream.start()).chain(stream.points());
+        let least = |(from, to): (&Joints, &Joints)| {
+            let distance = std::array::from_fn(|j| to[j] - from[j]);
+            LEAST_SHARE * self.excess(&distance, &distance)
+        };
+        let least = starts.zip(stream.points()).map(least);
+        let intervals = least.zip(stream.intervals()).map(|(least, time)| time.max(least));
+        let intervals = intervals.collect();
         Stream::new(*stream.start(), stream.points().to_vec(), intervals).unwrap_or(stream)
     }
 
-    /// How many times too short the times are for these speeds and accelerations.
+    /// How many times too short the times are for these speeds and accelerations; of displacements, the
+    /// time that they take at the limits, s.
     fn excess(&self, qd: &Joints, qdd: &Joints) -> f64 {
         (0..DOF).fold(0.0, |excess: f64, j| {
             excess
@@ -116,19 +127,32 @@ mod tests {
         Stream::new(point(0), (1..=20).map(point).collect(), vec![interval; 20]).unwrap()
     }
 
+    fn keeps_limits(stream: &Stream, model: &Model) -> bool {
+        let within = |found: Joints, limits: &Option<Vec<f64>>| {
+            let limits = limits.as_ref().unwrap();
+            found.iter().zip(limits).all(|(x, most)| *x <= (1.0 + 2.0 * ROUNDING) * most)
+        };
+        within(stream.max_velocity(), &model.limits.velocity)
+            && within(stream.max_acceleration(), &model.limits.acceleration)
+    }
+
     #[test]
     fn no_time_is_too_short_for_the_limits() {
         let model = robot::find("IRB1600-10/1.45").unwrap();
         let load = Load::none();
         let loaded = Loaded { model: &model, load: &load };
-        let within = |found: Joints, limits: &Option<Vec<f64>>| {
-            let limits = limits.as_ref().unwrap();
-            found.iter().zip(limits).all(|(x, most)| *x <= (1.0 + 2.0 * ROUNDING) * most)
-        };
         for interval in [1e-2, 1e-3, 1e-4, 1e-6] {
-            let late = within_limits(loaded, stream(interval));
-            assert!(within(late.max_velocity(), &model.limits.velocity), "{interval}");
-            assert!(within(late.max_acceleration(), &model.limits.acceleration), "{interval}");
+            assert!(keeps_limits(&within_limits(loaded, stream(interval)), &model), "{interval}");
+            // Points that can be reached in time keep theirs.
+            let point =
+                |i: usize| std::array::from_fn(|j| if j == 0 { 0.09 * i as f64 } else { 0.3 });
+            let mut times = vec![1.0; 7];
+            times[2..5].fill(interval);
+            let hasty = Stream::new(point(0), (1..=7).map(point).collect(), times).unwrap();
+            let late = within_limits(loaded, hasty);
+            assert!(keeps_limits(&late, &model), "{interval}");
+            assert!(late.duration() < 4.6, "{interval}: {}", late.duration());
+            assert!((late.intervals()[0] - 1.0).abs() < 1e-9, "{:?}", late.intervals());
         }
     }
 

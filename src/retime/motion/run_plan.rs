@@ -16,7 +16,8 @@ use crate::rapid::builtins::MoveForm;
 use crate::rapid::ir::movement::{Movement, Settings};
 use crate::retime::path::{Leg, LegKind, build};
 
-/// Shortest time of a point that is planned, s: a shorter one overflows, and is exceeded anyway.
+/// Least `\T` that is planned, s: a much shorter one vanishes in the sum of the times, and the limits
+/// lengthen it anyway.
 const SHORTEST: f64 = 1e-6;
 
 /// The motion of a run.

@@ -10,6 +10,11 @@ pub const DOF: usize = 6;
 /// One number per joint.
 pub type Joints = [f64; DOF];
 
+/// Whether no joint is farther apart than `tolerance`, rad.
+pub fn are_close(a: &Joints, b: &Joints, tolerance: f64) -> bool {
+    (0..DOF).all(|j| (a[j] - b[j]).abs() <= tolerance)
+}
+
 /// Coefficients by x/h, lowest first, of the quintic with these values, first and second derivatives
 /// by x at 0 and at h.
 pub fn quintic(h: f64, from: [f64; 3], to: [f64; 3]) -> [f64; 6] {

@@ -142,6 +142,14 @@ fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {
     let sealed =
         Sealed { seals: read(&args.cases.join(SEALS))?, key: read(&args.cases.join(KEY))? };
     let labels = blind::open(&sealed)?;
+    let folders = labels.iter().filter_map(|label| fs::read_dir(args.cases.join(&label.case)).ok());
+    let files = folders.flatten().flatten().map(|entry| entry.path());
+    let read_files: Vec<PathBuf> =
+        files.chain([KEY, SEALS].map(|name| args.cases.join(name))).collect();
+    output::refuse_inputs(
+        &[("--report", args.report.as_ref())],
+        read_files.iter().map(PathBuf::as_path),
+    )?;
     if let Some(id) = &args.leave_out
         && !labels.iter().any(|label| blind::is_of(label, id))
     {

@@ -23,9 +23,6 @@ use crate::retime::motion::{Options, Simulation};
 use crate::tool::config::{self, Config};
 use crate::tool::retrofit::Source;
 
-/// Upper limit of any number in an option: m, mm or degrees.
-const MAX_NUMBER: f64 = 1e6;
-
 /// Message for robots with another number of joints.
 pub(super) const RUN_SIX_JOINTS: &str =
     "RAPID programs are run for robots with 6: name another with --robot";
@@ -122,6 +119,8 @@ pub(super) struct Job {
     pub(super) options: Options,
     /// The inputs of the options, as the user wrote them.
     pub(super) inputs: Vec<String>,
+    /// The files and folders that were named, and the configuration file.
+    pub(super) named: Vec<PathBuf>,
 }
 
 impl Job {
@@ -130,10 +129,11 @@ impl Job {
         !self.streams.modules.is_empty()
     }
 
-    /// The files that were read: modules, and the file of the robot.
+    /// The files that were read: modules, the files of the robot and of the configuration.
     pub(super) fn read_paths(&self) -> impl Iterator<Item = &Path> {
         let modules = self.input.files.iter().map(|file| file.source.path.as_str());
-        modules.chain(self.model.file.as_deref()).map(Path::new)
+        let files = modules.chain(self.model.file.as_deref()).map(Path::new);
+        files.chain(self.named.iter().map(PathBuf::as_path))
     }
 
     /// The files that belong to other tasks.
@@ -213,7 +213,8 @@ pub(super) fn prepare_read(program: &ProgramArgs, input: Input) -> anyhow::Resul
         })
         .collect();
     let streams = Streams::default();
-    Ok(Job { input, files, streams, model, config, entry, options, inputs })
+    let named = named_paths(args);
+    Ok(Job { input, files, streams, model, config, entry, options, inputs, named })
 }
 
 /// The options of the simulation, and the inputs with stated times as the user wrote them.
@@ -369,19 +370,21 @@ fn input_time(text: &str) -> anyhow::Result<(String, f64)> {
 
 /// Six axis positions \[rad\] from an option in degrees.
 pub(super) fn six_degrees(option: &str, text: &str) -> anyhow::Result<[f64; 6]> {
-    let degrees = numbers(option, text, "six axis positions in degrees, such as 0,-12,14,0,90,0")?;
+    let help = "six axis positions in degrees, such as 0,-12,14,0,90,0";
+    let degrees = numbers(option, text, f64::INFINITY, help)?;
     Ok(degrees.map(f64::to_radians))
 }
 
-/// Numbers of an option, separated by commas; `help` ends the message.
+/// Numbers of an option, separated by commas, each less than `most`; `help` ends the message.
 pub(super) fn numbers<const N: usize>(
     option: &str,
     text: &str,
+    most: f64,
     help: &str,
 ) -> anyhow::Result<[f64; N]> {
     let wrong = || format!("{option} {text}: give {help}");
     let values: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
-    let values = values.ok().filter(|x| x.iter().all(|x: &f64| x.abs() < MAX_NUMBER));
+    let values = values.ok().filter(|x| x.iter().all(|x: &f64| x.abs() < most));
     values.and_then(|x| <[f64; N]>::try_from(x).ok()).with_context(wrong)
 }
 

@@ -13,6 +13,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
 
 use super::common::{self, Format};
+use super::input::{self, Input};
 use super::logs::{PreparedLog, RawLog, Reader, held_out, read_all};
 use super::output::{self, is_same_file};
 use crate::arm::effects::{self, ALL, Effect};
@@ -142,10 +143,14 @@ pub(super) fn diagnose_case(
 /// Refuses outputs that overwrite an input, and logs that are given twice or in two roles.
 fn check_paths(args: &DiagnoseArgs) -> anyhow::Result<()> {
     let within = |path: &Path, files: &[PathBuf]| files.iter().any(|it| is_same_file(it, path));
+    let program = args.program.iter().map(|path| input::read(std::slice::from_ref(path)));
+    let program: Vec<Input> = program.collect::<Result<_, _>>()?;
+    let modules = program.iter().flat_map(|input| &input.files);
+    let modules = modules.map(|file| Path::new(&file.source.path));
     let logs = args.log.iter().chain(&args.heldout).chain(&args.baseline).map(PathBuf::as_path);
     output::refuse_inputs(
         &[("--out", args.out.as_ref()), ("--report", args.report.as_ref())],
-        logs.chain([Path::new(&args.robot)]).chain(args.program.as_deref()),
+        logs.chain([Path::new(&args.robot)]).chain(modules),
     )?;
     for (number, path) in args.log.iter().enumerate() {
         if within(path, &args.log[..number]) {

@@ -12,7 +12,7 @@ use std::process::ExitCode;
 use anyhow::bail;
 use nalgebra::Vector3;
 
-use self::area::{keep_out, plane};
+use self::area::{MAX_NUMBER, keep_out, plane};
 use self::args::{MAX_SPACING, Spacing, Variant};
 use self::motion::{TABLE_STEP, designed_motion, plateau_motion};
 use self::outputs::{json, text, write};
@@ -22,7 +22,6 @@ use crate::arm::effects;
 use crate::arm::kinematics::{Body, Obstacle, Plane};
 use crate::arm::robot::Model;
 use crate::learn::excite::{Design, Focus, Plateaus, friction_plateaus, wrist_plateaus};
-
 /// Range of base frequencies that can be designed and recorded \[Hz\].
 const MIN_FREQUENCY: f64 = 0.01;
 const MAX_FREQUENCY: f64 = 10.0;
@@ -98,8 +97,12 @@ fn settings(args: &ExciteArgs, model: &Model) -> anyhow::Result<Design> {
     obstacles.extend(floor(model));
     let tool = match &args.tool {
         Some(text) => {
-            let [x, y, z] =
-                common::numbers("--tool", text, "three lengths in mm, such as 0,0,250")?;
+            let [x, y, z] = common::numbers(
+                "--tool",
+                text,
+                MAX_NUMBER,
+                "three lengths in mm, such as 0,0,250",
+            )?;
             Vector3::new(x, y, z) * 1e-3
         }
         None => Vector3::zeros(),

@@ -142,7 +142,7 @@ fn note_syntax_errors(args: &LintArgs, files: &[SourceFile], report: &Report) {
             more => format!(" and {more} more"),
         };
         let text = format!(
-            "{}:{line}: {}{more}: what stands there is not linted; joulepath parse {} shows all \
+            "{}:{line}: {}{more}: statements with syntax errors are not linted; joulepath parse {} shows all \
              syntax errors",
             file.path, first.message, file.path
         );

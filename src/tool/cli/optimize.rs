@@ -219,9 +219,7 @@ pub(super) fn refresh(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
 
 fn optimize_job(args: &OptimizeArgs, job: &Job) -> anyhow::Result<ExitCode> {
     let settings = settings(args, job)?;
-    let named = common::named_paths(&args.program.cell);
-    let read = job.read_paths().chain(named.iter().map(PathBuf::as_path));
-    output::refuse_inputs(&[("--report", args.report.as_ref())], read)?;
+    output::refuse_inputs(&[("--report", args.report.as_ref())], job.read_paths())?;
     let quiet = args.program.cell.quiet;
     // The folder of a single task does not include the controller's module list.
     let paths = args.program.cell.paths.as_slice();

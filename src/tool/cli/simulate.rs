@@ -41,6 +41,10 @@ const MAX_ROWS: f64 = 5e6;
 
 pub(super) fn run(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
     let job = common::prepare(&args.program)?;
+    output::refuse_inputs(
+        &[("--trajectory", args.trajectory.as_ref()), ("--report", args.report.as_ref())],
+        job.read_paths(),
+    )?;
     let (program, entry) = read_program(&job.files, &job.entry)?;
     signals::check(&args.program.cell, &job.options.levels, &program)?;
     let simulation = motion::simulate(&program, entry, &job.model, &job.options);
@@ -60,11 +64,6 @@ pub(super) fn run(args: &SimulateArgs) -> anyhow::Result<ExitCode> {
         plausible: plausible.as_ref(),
     };
     if args.trajectory.is_some() || args.report.is_some() {
-        let named = common::named_paths(&args.program.cell);
-        output::refuse_inputs(
-            &[("--trajectory", args.trajectory.as_ref()), ("--report", args.report.as_ref())],
-            job.read_paths().chain(named.iter().map(PathBuf::as_path)),
-        )?;
         let rows = simulation.cycle_s / STEP;
         if rows > MAX_ROWS {
             bail!(

@@ -117,7 +117,9 @@ impl Plan<'_> {
     /// kept until the new one is there.
     pub(super) fn write(&self) -> anyhow::Result<PathBuf> {
         let failed = || format!("cannot replace '{}'", self.folder.display());
-        let older = self.folder.with_extension("older");
+        let mut older = self.folder.clone().into_os_string();
+        older.push(".older");
+        let older = PathBuf::from(older);
         let has_older = self.folder.exists();
         if has_older {
             if older.exists() {
@@ -130,7 +132,9 @@ impl Plan<'_> {
         if has_older {
             match &written {
                 Ok(()) => fs::remove_dir_all(&older).with_context(failed)?,
-                Err(_) => fs::rename(&older, &self.folder).with_context(failed)?,
+                Err(error) => fs::rename(&older, &self.folder).with_context(|| {
+                    format!("{error:#}; the originals are in '{}' now", older.display())
+                })?,
             }
         }
         written?;

@@ -9,7 +9,7 @@ use super::flow::{Class, Flow, Next, Place, Through};
 use super::group::Group;
 use super::saving::Evaluation;
 use super::site::{Site, compact, constant, facts_of, site};
-use super::statements::{called_name, routines};
+use super::statements::called_name;
 use super::system::System;
 use super::trace::{self, Recording, TraceStep, executions};
 use crate::arm::robot::Model;
@@ -107,7 +107,7 @@ impl<'c> Context<'c> {
         let flow = Flow::new(program, entry);
         let executed = executions(&trace);
         let compact: BTreeMap<RoutineId, BTreeSet<Span>> =
-            routines(program).map(|(id, routine)| (id, compact(routine))).collect();
+            program.routines().map(|(id, routine)| (id, compact(routine))).collect();
         let mut sites = Vec::new();
         for (place, stmt, reachable) in flow.statements() {
             let StmtKind::Call(call) = &stmt.kind else { continue };
@@ -356,7 +356,7 @@ fn unknown_starts(
     let starts_anywhere = |routine: &RoutineId| {
         flow.callers(*routine).is_empty() || flow.is_entry(*routine) || flow.has_late_calls()
     };
-    let entries = routines(program).map(|(id, _)| id).filter(starts_anywhere);
+    let entries = program.routines().map(|(id, _)| id).filter(starts_anywhere);
     let mut sources: Vec<Place> = entries.map(|id| (id, 0)).collect();
     let mut starts = BTreeSet::new();
     for (place, stmt, reachable) in flow.statements() {

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 
-use super::statements::{all_blocks, routines};
 use crate::rapid::builtins;
 use crate::rapid::ir::hir::{Arg, ArgKind, DataKind, Expr, ExprKind, StmtKind};
 use crate::rapid::ir::program::{Program, RoutineId, Symbol};
@@ -17,9 +16,8 @@ pub struct DataNames<'p> {
 impl<'p> DataNames<'p> {
     /// The data names of a program.
     pub fn new(program: &'p Program) -> DataNames<'p> {
-        let inner = routines(program).flat_map(|(id, routine)| {
-            let statements = all_blocks(routine).into_iter().flatten();
-            statements.filter_map(move |stmt| match &stmt.kind {
+        let inner = program.routines().flat_map(|(id, routine)| {
+            routine.statements().filter_map(move |stmt| match &stmt.kind {
                 StmtKind::For { var, .. } => Some((id, var.key.as_str())),
                 StmtKind::Data(data) => Some((id, data.name.key.as_str())),
                 _ => None,

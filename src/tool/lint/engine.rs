@@ -32,7 +32,7 @@ pub struct Report {
     pub cycle_energy_j: Option<f64>,
     /// Number of unresolved places.
     pub unresolved: usize,
-    /// The files with syntax errors by number, in file order: what stands there is not linted.
+    /// The files with syntax errors by number, in file order. Filled by [`lint`] only.
     pub syntax_errors: Vec<(usize, Vec<SyntaxError>)>,
 }
 

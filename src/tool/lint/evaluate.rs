@@ -16,10 +16,10 @@ use crate::retime::energy::plausible::{Interval, Robots};
 use crate::retime::energy::{Account, EnergyParts, account};
 use crate::retime::motion::timeline::{Event, Run, Simulation, WaitBasis, What};
 use crate::retime::motion::{Options, Step, replay};
-use crate::retime::path::joint_path::{DOF, Joints};
+use crate::retime::path::joint_path::{Joints, are_close};
 
 /// Maximum distance of equal joint positions, rad.
-const POSITION_TOLERANCE: f64 = 1e-4;
+pub(super) const POSITION_TOLERANCE: f64 = 1e-4;
 /// Maximum number of later runs whose start a change may affect.
 const MAX_RUNS_BEHIND: usize = 3;
 /// Maximum number of executions of a statement for which a saving is computed.
@@ -273,18 +273,12 @@ fn extended_window(
         }
         let was = last_run(&simulation.events[..=last])?.end;
         let is = last_run(&after.events).map_or(start, |run| run.end);
-        if largest_difference(&was, &is) <= POSITION_TOLERANCE
-            || last + 1 == simulation.events.len()
-        {
+        if are_close(&was, &is, POSITION_TOLERANCE) || last + 1 == simulation.events.len() {
             return Some((first..=last, after, rest));
         }
         last = next_run(simulation, last);
     }
     None
-}
-
-fn largest_difference(a: &Joints, b: &Joints) -> f64 {
-    (0..DOF).map(|j| (a[j] - b[j]).abs()).fold(0.0, f64::max)
 }
 
 /// The steps of a window with the change, and the robot position at its start.

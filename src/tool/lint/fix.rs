@@ -1,18 +1,16 @@
 //! Applies fixes, and withdraws those that do not save energy.
 
 use super::engine::{Examined, Report, cycles, examine, lint};
-use super::evaluate::Cycle;
+use super::evaluate::{Cycle, POSITION_TOLERANCE};
 use super::job::Job;
 use super::rule::{Applicability, Family, Finding};
 use super::trace::{self, Action};
 use crate::rapid::syntax;
 use crate::rapid::text::{Edit, FileId, SourceFile, apply};
 use crate::retime::motion::timeline::What;
-use crate::retime::path::joint_path::{DOF, Joints};
+use crate::retime::path::joint_path::{Joints, are_close};
 
 const MAX_ROUNDS: usize = 40;
-/// Maximum distance of equal joint positions, rad.
-const POSITION_TOLERANCE: f64 = 1e-4;
 /// Rounding of an energy, J.
 const ROUNDING: f64 = 1e-6;
 
@@ -176,8 +174,7 @@ fn same_process(before: &Cycle, after: &Cycle) -> bool {
         runs.filter(|run| run.problem.is_some()).count()
     };
     let (a, b) = (places(before), places(after));
-    let near =
-        |(a, b): (&Joints, &Joints)| (0..DOF).all(|j| (a[j] - b[j]).abs() <= POSITION_TOLERANCE);
+    let near = |(a, b): (&Joints, &Joints)| are_close(a, b, POSITION_TOLERANCE);
     actions(before) == actions(after)
         && a.len() == b.len()
         && a.iter().zip(&b).all(near)

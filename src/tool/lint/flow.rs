@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::data_names::DataNames;
-use super::statements::{called_instruction, routines};
+use super::statements::called_instruction;
 use crate::rapid::builtins::{self, Instruction};
 use crate::rapid::ir::graph::{Graph, NodeId, Step, When};
 use crate::rapid::ir::hir::{Call, Callee, Stmt, StmtKind};
@@ -73,7 +73,7 @@ pub struct Flow<'p> {
 impl<'p> Flow<'p> {
     /// The control flow of a program that starts with `entry`, if known.
     pub fn new(program: &'p Program, entry: Option<RoutineId>) -> Flow<'p> {
-        let graphs = routines(program).map(|(id, routine)| {
+        let graphs = program.routines().map(|(id, routine)| {
             let graph = Graph::new(routine);
             let reachable = graph.reachable();
             (id, (graph, reachable))

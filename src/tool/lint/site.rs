@@ -6,7 +6,6 @@ use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 
 use super::data_names::DataNames;
 use super::flow::Place;
-use super::statements::all_blocks;
 use crate::rapid::builtins::{MoveForm, MoveKind, MoveSignature, movement};
 use crate::rapid::ir::exec::evaluate;
 use crate::rapid::ir::hir::{ArgKind, Call, Callee, Expr, ExprKind, Routine, Stmt, StmtKind};
@@ -245,7 +244,7 @@ pub fn compact(routine: &Routine) -> BTreeSet<Span> {
         let [only] = inner.as_slice() else { return None };
         (only.span.end == stmt.span.end).then_some(only.span)
     };
-    all_blocks(routine).into_iter().flatten().filter_map(only).collect()
+    routine.statements().filter_map(only).collect()
 }
 
 /// The parts of a record or an array.

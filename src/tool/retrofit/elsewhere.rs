@@ -2,10 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use super::statements::{calls, statements, written_places};
+use super::statements::{calls, written_places};
 use crate::rapid::builtins::{Instruction, instruction, may_write};
 use crate::rapid::ir::hir::{DataKind, Expr, Ident, Routine};
 use crate::rapid::ir::lower;
+use crate::rapid::ir::walk::statements;
 use crate::rapid::syntax;
 use crate::rapid::text::SourceFile;
 
@@ -23,8 +24,7 @@ pub fn written_in<'f>(files: impl Iterator<Item = &'f SourceFile>) -> BTreeSet<S
             shared.extend(pers.map(|data| data.name.key.clone()));
             for block in module.routines.iter().flat_map(Routine::blocks) {
                 by_name |= calls(block).any(|(_, name, _)| finds_by_name(name));
-                let places =
-                    statements(block).into_iter().flat_map(|stmt| written_places(stmt, may_write));
+                let places = statements(block).flat_map(|stmt| written_places(stmt, may_write));
                 names.extend(places.filter_map(Expr::base).map(|name| name.key.clone()));
             }
         }

@@ -7,7 +7,6 @@ use super::candidate::{Candidate, State, with_states};
 use super::error::RetrofitError;
 use super::files::{OutputFile, unchanged};
 use super::job::Original;
-use super::order::are_close;
 use super::simulated::ENDPOINT_TOLERANCE;
 use crate::rapid::ir::predefined;
 use crate::rapid::ir::program::{Program, Symbol};
@@ -15,6 +14,7 @@ use crate::rapid::text::Span;
 use crate::retime::motion::stream::{Joints, Stream};
 use crate::retime::motion::timeline::Run;
 use crate::retime::optimize::reason::Reason;
+use crate::retime::path::joint_path::are_close;
 use crate::tool::emit::{self, EGM_STEP_S, GeneratedNames, Names};
 
 /// The folder, relative to the program.

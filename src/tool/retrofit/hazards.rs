@@ -115,7 +115,8 @@ fn argument_error_handler(program: &Program) -> Option<Reason> {
         let named = |number: &Expr| is_number(number, Cause::Argument);
         (numbers.is_empty() || numbers.iter().any(named)) && handles_argument_error(block)
     };
-    let routine = routines(program).find(|routine| routine.error.iter().any(takes))?;
+    let routine =
+        program.routines().map(|(_, it)| it).find(|routine| routine.error.iter().any(takes))?;
     Some(Reason::Handler(format!(
         "an argument of it may end in an error that {} handles; the guard would raise it before the \
          first movement",
@@ -144,7 +145,7 @@ fn handles_argument_error(block: &Block) -> bool {
 /// The movements that an error handler prevents from being streams.
 fn handlers(program: &Program) -> BTreeMap<Span, Reason> {
     let mut found = BTreeMap::new();
-    for (routine, block) in routines(program).flat_map(|r| r.blocks().map(move |b| (r, b))) {
+    for (routine, block) in program.routines().flat_map(|(_, r)| r.blocks().map(move |b| (r, b))) {
         let in_body = std::ptr::eq(block, &raw const routine.body);
         let why = if in_body { handler_of(routine) } else { Some("it stands in a handler".into()) };
         if let Some(why) = why {
@@ -215,8 +216,4 @@ fn is_number(number: &Expr, cause: Cause) -> bool {
         ExprKind::Ref(name) => builtins::error(&name.key) == Some(cause),
         _ => true,
     }
-}
-
-fn routines(program: &Program) -> impl Iterator<Item = &Routine> {
-    program.modules.iter().flat_map(|module| &module.routines)
 }

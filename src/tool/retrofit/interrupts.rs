@@ -2,10 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use super::statements::{places_written_by_functions, statements, written_places};
+use super::statements::{places_written_by_functions, written_places};
 use crate::rapid::builtins::{self, Instruction, Source, is_movement, may_write};
 use crate::rapid::ir::hir::{Block, Callee, Expr, ExprKind, Routine, StmtKind};
 use crate::rapid::ir::program::{DataId, Program, RoutineId, Symbol};
+use crate::rapid::ir::walk::statements;
 use crate::retime::optimize::reason::Reason;
 
 /// The first effect of a connected interrupt routine on movements.

@@ -4,7 +4,7 @@ use super::simulated::ENDPOINT_TOLERANCE;
 use crate::retime::motion::Simulation;
 use crate::retime::motion::timed::TimedMotion;
 use crate::retime::motion::timeline::{Event, Run, What};
-use crate::retime::path::joint_path::{DOF, Joints};
+use crate::retime::path::joint_path::are_close;
 
 /// Whether both have the same sequence of events.
 pub(super) fn same_order(a: &Simulation, b: &Simulation) -> bool {
@@ -29,11 +29,6 @@ pub(super) fn same_event(a: &Event, b: &Event) -> bool {
 fn same_ends(a: &Run, b: &Run) -> bool {
     are_close(&a.start, &b.start, ENDPOINT_TOLERANCE)
         && are_close(&a.end, &b.end, ENDPOINT_TOLERANCE)
-}
-
-/// Whether no joint is farther apart than `tolerance`, rad.
-pub(super) fn are_close(a: &Joints, b: &Joints, tolerance: f64) -> bool {
-    (0..DOF).all(|j| (a[j] - b[j]).abs() <= tolerance)
 }
 
 fn is_stream(run: &Run) -> bool {

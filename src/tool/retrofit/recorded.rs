@@ -4,7 +4,7 @@
 use super::files::Source;
 use super::guards::one_line;
 use crate::rapid::builtins::{self, Effect, Setting, instruction};
-use crate::rapid::ir::hir::{Arg, ArgKind, Block, Call, Callee, Expr, Routine, Stmt, StmtKind};
+use crate::rapid::ir::hir::{Arg, Block, Call, Callee, Expr, Routine, Stmt, StmtKind};
 use crate::rapid::ir::program::{Program, Symbol};
 use crate::rapid::text::{Charset, Edit, Span, charset};
 use crate::tool::emit::{Names, Recorded};
@@ -19,15 +19,16 @@ enum Change {
 
 /// The insertions that record these effects.
 pub(super) fn recorded(program: &Program, files: &[Source], names: &Names) -> Recorded {
-    let mut found = StateChangeCollector { program, module: 0, changes: Vec::new() };
-    for (m, module) in program.modules.iter().enumerate() {
-        found.module = m;
-        for block in module.routines.iter().flat_map(Routine::blocks) {
-            found.block(block);
+    let mut found: Vec<(Place, Vec<Change>)> = Vec::new();
+    for (id, routine) in program.routines() {
+        let mut collector = StateChangeCollector { program, module: id.module, routine, found };
+        for block in routine.blocks() {
+            collector.block(block);
         }
+        found = collector.found;
     }
     let mut switches: Vec<&'static str> = Vec::new();
-    for (_, change) in &found.changes {
+    for change in found.iter().flat_map(|(_, changes)| changes) {
         if let Change::Switch(name, true) = change
             && !switches.contains(name)
         {
@@ -36,18 +37,22 @@ pub(super) fn recorded(program: &Program, files: &[Source], names: &Names) -> Re
     }
     let charsets: Vec<Charset> = files.iter().map(|file| charset(&file.file.bytes)).collect();
     let mut recorded = Recorded { switches, load: false, edits: Vec::new() };
-    for (place, change) in &found.changes {
-        let text = match change {
+    for (place, changes) in &found {
+        let texts = changes.iter().filter_map(|change| match change {
             Change::Load(load) => {
                 recorded.load = true;
-                format!(" {}Load:={};", names.prefix, one_line(files, *load))
+                Some(format!(" {}Load:={};", names.prefix, one_line(files, *load)))
             }
             Change::Switch(name, on) if recorded.switches.contains(name) => {
-                format!(" {}{name}:={};", names.prefix, if *on { "TRUE" } else { "FALSE" })
+                Some(format!(" {}{name}:={};", names.prefix, if *on { "TRUE" } else { "FALSE" }))
             }
             // A setting that is never on needs no record.
-            Change::Switch(..) => continue,
-        };
+            Change::Switch(..) => None,
+        });
+        let text: String = texts.collect();
+        if text.is_empty() {
+            continue;
+        }
         let charset = charsets[place.end.file.0 as usize];
         let insertion = |at: u32, text: String| Edit {
             span: Span { start: at, end: at, ..place.end },
@@ -74,7 +79,8 @@ struct Place {
 struct StateChangeCollector<'p> {
     program: &'p Program,
     module: usize,
-    changes: Vec<(Place, Change)>,
+    routine: &'p Routine,
+    found: Vec<(Place, Vec<Change>)>,
 }
 
 impl StateChangeCollector<'_> {
@@ -105,44 +111,49 @@ impl StateChangeCollector<'_> {
             && let Callee::Name(name) = &call.callee
             && self.program.resolve(self.module, &name.key).is_none()
         {
-            for change in changes(self.program, self.module, &name.key, call) {
-                self.changes.push((Place { end: stmt.span, compact }, change));
-            }
+            let changes = self.changes(&name.key, call);
+            self.found.push((Place { end: stmt.span, compact }, changes));
         }
     }
-}
 
-/// The effects of an instruction of `module`.
-fn changes(program: &Program, module: usize, key: &str, call: &Call) -> Vec<Change> {
-    let Some(instruction) = instruction(key) else { return Vec::new() };
-    let first = call.args.iter().find_map(Arg::positional);
-    let name = first.and_then(Expr::base).map(|name| name.key.as_str());
-    match instruction.effect {
-        Effect::Setting(Setting::GripLoad) => {
-            let data = match name.and_then(|name| program.resolve(module, name)) {
-                Some(Symbol::Data(id)) => Some(program.data(id).type_name.key.as_str()),
-                _ => name.filter(|name| *name == "load0").map(|_| "loaddata"),
-            };
-            let is_by_name = call.args.iter().any(|arg| matches!(arg.kind, ArgKind::Optional(..)));
-            match (instruction.name, data, first) {
-                // The name of the object is computed.
-                _ if is_by_name => vec![Change::Switch(instruction.name, true)],
-                ("GripLoad", _, Some(load)) | (_, Some("loaddata"), Some(load)) => {
-                    vec![Change::Load(load.span)]
+    /// The effects of an instruction.
+    fn changes(&self, key: &str, call: &Call) -> Vec<Change> {
+        let Some(instruction) = instruction(key) else { return Vec::new() };
+        let first = call.args.iter().find_map(Arg::positional);
+        let name = first.and_then(Expr::base).map(|name| name.key.as_str());
+        let switch = |on: bool| vec![Change::Switch(instruction.name, on)];
+        match (instruction.effect, first) {
+            (Effect::Setting(Setting::GripLoad), Some(load)) => vec![Change::Load(load.span)],
+            // The name of the object is computed.
+            (Effect::Setting(Setting::SystemData), _) if call.args.len() > 1 => switch(true),
+            (Effect::Setting(Setting::SystemData), Some(data)) => {
+                match name.and_then(|name| self.type_of(name)) {
+                    Some("loaddata") => vec![Change::Load(data.span)],
+                    Some("tooldata" | "wobjdata") => Vec::new(),
+                    _ => switch(true),
                 }
-                (_, Some("tooldata" | "wobjdata"), _) => Vec::new(),
-                _ => vec![Change::Switch(instruction.name, true)],
             }
+            (Effect::Setting(Setting::MotionProcessMode), _) => {
+                switch(name != Some("optimal_cycle_time_mode"))
+            }
+            (Effect::Unmodelled, _) => switch(true),
+            (Effect::Ends(ended), _) => {
+                let ended = ended.iter().filter_map(|key| builtins::instruction(key));
+                ended.map(|ended| Change::Switch(ended.name, false)).collect()
+            }
+            _ => Vec::new(),
         }
-        Effect::Setting(Setting::MotionProcessMode) => {
-            let is_on = name != Some("optimal_cycle_time_mode");
-            vec![Change::Switch(instruction.name, is_on)]
-        }
-        Effect::Unmodelled => vec![Change::Switch(instruction.name, true)],
-        Effect::Ends(ended) => {
-            let ended = ended.iter().filter_map(|key| builtins::instruction(key));
-            ended.map(|ended| Change::Switch(ended.name, false)).collect()
-        }
-        _ => Vec::new(),
+    }
+
+    /// The type of data: names of the routine hide those of the module.
+    fn type_of(&self, name: &str) -> Option<&str> {
+        let param = self.routine.params.iter().find(|param| param.name.key == name);
+        let local = self.routine.data.iter().find(|data| data.name.key == name);
+        let own = param.map(|it| &it.type_name).or(local.map(|it| &it.type_name));
+        own.map(|own| own.key.as_str()).or_else(|| match self.program.resolve(self.module, name) {
+            Some(Symbol::Data(id)) => Some(self.program.data(id).type_name.key.as_str()),
+            Some(_) => None,
+            None => builtins::predefined(name).map(|data| data.type_name),
+        })
     }
 }

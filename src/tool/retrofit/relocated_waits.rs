@@ -6,7 +6,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::candidate::{Candidate, State};
 use super::files::Source;
 use super::job::Job;
-use super::order::are_close;
 use super::settings::Settings;
 use super::simulated::{ENDPOINT_TOLERANCE, Simulated, TIME_TOLERANCE};
 use crate::arm::robot::Model;
@@ -20,6 +19,7 @@ use crate::retime::optimize::check::{Room, check};
 use crate::retime::optimize::keep_out::around;
 use crate::retime::optimize::reason::Reason;
 use crate::retime::optimize::rest::{Rest, Standstill, rest};
+use crate::retime::path::joint_path::are_close;
 
 /// Smaller joint distances count as the same place, rad.
 const SAME_PLACE: f64 = 1e-6;

@@ -1,22 +1,12 @@
-//! The statements of a routine, nested ones included, and what they may write.
+//! The calls in a block, and what a statement may write.
 
 use crate::rapid::builtins::{Function, function};
-use crate::rapid::ir::hir::{Arg, Block, Call, Callee, Expr, ExprKind, Ident, Stmt, StmtKind};
+use crate::rapid::ir::hir::{Arg, Block, Call, Callee, Expr, Ident, Stmt, StmtKind};
+use crate::rapid::ir::walk::statements;
 
-/// The statements of a block and of its nested blocks, in text order.
-pub(super) fn statements(block: &Block) -> Vec<&Stmt> {
-    let mut found = Vec::new();
-    let mut open: Vec<&Stmt> = block.iter().rev().collect();
-    while let Some(stmt) = open.pop() {
-        found.push(stmt);
-        open.extend(stmt.kind.blocks().into_iter().rev().flat_map(|inner| inner.iter().rev()));
-    }
-    found
-}
-
-/// The calls among them with a static callee name.
+/// The calls in a block with a static callee name, those of nested blocks too.
 pub(super) fn calls(block: &Block) -> impl Iterator<Item = (&Stmt, &Ident, &Call)> {
-    statements(block).into_iter().filter_map(|stmt| match &stmt.kind {
+    statements(block).filter_map(|stmt| match &stmt.kind {
         StmtKind::Call(call) => match &call.callee {
             Callee::Name(name) => Some((stmt, name, call)),
             Callee::Late(_) => None,
@@ -41,15 +31,8 @@ pub(super) fn written_places(stmt: &Stmt, may_write: impl Fn(&str) -> bool) -> V
 }
 
 /// The arguments that function calls within these expressions may write.
-pub(super) fn places_written_by_functions(mut open: Vec<&Expr>) -> Vec<&Expr> {
-    let mut places = Vec::new();
-    while let Some(expr) = open.pop() {
-        if let ExprKind::Call(name, args) = &expr.kind
-            && !function(&name.key).is_some_and(Function::only_reads)
-        {
-            places.extend(args.iter().filter_map(Arg::value));
-        }
-        open.extend(expr.parts());
-    }
-    places
+pub(super) fn places_written_by_functions(exprs: Vec<&Expr>) -> Vec<&Expr> {
+    let calls = exprs.into_iter().flat_map(Expr::calls);
+    let writing = calls.filter(|(name, _)| !function(&name.key).is_some_and(Function::only_reads));
+    writing.flat_map(|(_, args)| args.iter().filter_map(Arg::value)).collect()
 }

@@ -96,7 +96,7 @@ pub(super) fn verify(
     });
     let mut simulated = Simulated::with_energy(model, simulation);
     let mut wait_faults = BTreeMap::new();
-    if let Rewrite::Streams { waits, .. } = rewrite {
+    if let (Rewrite::Streams { waits, .. }, true) = (rewrite, text_holds) {
         (simulated, wait_faults) = with_waits_folded(model, settings, simulated, waits);
         verification.note("waits that are spent elsewhere take their time", wait_faults.is_empty());
     }

@@ -2,7 +2,6 @@
 
 use super::figures::Verification;
 use super::job::Original;
-use super::order::are_close;
 use super::settings::Settings;
 use super::speed_slots::Slot;
 use crate::arm::dynamics::Data;
@@ -12,6 +11,7 @@ use crate::retime::motion::Simulation;
 use crate::retime::motion::timeline::{Run, What};
 use crate::retime::optimize::check::Check;
 use crate::retime::optimize::freedom::{Bound, Freedom};
+use crate::retime::path::joint_path::are_close;
 
 /// Time step of the samples, s.
 const STEP: f64 = 0.002;

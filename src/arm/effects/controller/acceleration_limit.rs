@@ -2,7 +2,7 @@
 
 use crate::arm::effects::effect::{Channel, Effect, Form, Scope, bounded};
 
-pub(crate) const ACCELERATION_LIMIT: Effect = Effect {
+pub(in crate::arm::effects) const ACCELERATION_LIMIT: Effect = Effect {
     id: "acceleration_limit",
     channel: Channel::Motion,
     scope: Scope::Robot,

@@ -2,7 +2,7 @@
 
 use crate::arm::effects::effect::{Channel, Effect, Form, Scope, free};
 
-pub(crate) const PROGRAM_WAIT: Effect = Effect {
+pub(in crate::arm::effects) const PROGRAM_WAIT: Effect = Effect {
     id: "program_wait",
     channel: Channel::Motion,
     scope: Scope::Robot,

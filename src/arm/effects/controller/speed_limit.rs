@@ -2,7 +2,7 @@
 
 use crate::arm::effects::effect::{Channel, Effect, Form, Scope, bounded};
 
-pub(crate) const SPEED_LIMIT: Effect = Effect {
+pub(in crate::arm::effects) const SPEED_LIMIT: Effect = Effect {
     id: "speed_limit",
     channel: Channel::Motion,
     scope: Scope::Robot,

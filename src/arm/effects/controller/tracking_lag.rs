@@ -2,7 +2,7 @@
 
 use crate::arm::effects::effect::{Channel, Effect, Form, Scope, free};
 
-pub(crate) const TRACKING_LAG: Effect = Effect {
+pub(in crate::arm::effects) const TRACKING_LAG: Effect = Effect {
     id: "tracking_lag",
     channel: Channel::Motion,
     scope: Scope::Robot,

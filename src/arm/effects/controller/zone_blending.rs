@@ -2,7 +2,7 @@
 
 use crate::arm::effects::effect::{Channel, Effect, Form, Scope, bounded};
 
-pub(crate) const ZONE_BLENDING: Effect = Effect {
+pub(in crate::arm::effects) const ZONE_BLENDING: Effect = Effect {
     id: "zone_blending",
     channel: Channel::Motion,
     scope: Scope::Robot,

@@ -5,9 +5,9 @@ use crate::arm::robot::LawState;
 use crate::arm::effects::effect::{
     Channel, Coordinate, Effect, Form, Role, Scope, Values, bounded, every, free, linear, shaped,
 };
-use crate::arm::effects::rigid_body::contact::within;
+use crate::arm::effects::window::within;
 
-pub(crate) const BRAKE_DRAG: Effect = Effect {
+pub(in crate::arm::effects) const BRAKE_DRAG: Effect = Effect {
     id: "brake_drag",
     channel: Channel::Torque,
     scope: Scope::Joint,

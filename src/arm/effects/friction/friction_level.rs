@@ -4,7 +4,7 @@ use crate::arm::robot::Model;
 
 use crate::arm::effects::effect::{Channel, Effect, Form, Scope, every, free, linear};
 
-pub(crate) const FRICTION_LEVEL: Effect = Effect {
+pub(in crate::arm::effects) const FRICTION_LEVEL: Effect = Effect {
     id: "friction_level",
     channel: Channel::Torque,
     scope: Scope::Joint,

@@ -4,7 +4,7 @@ use crate::arm::robot::LawState;
 
 use crate::arm::effects::effect::{Channel, Effect, Form, Scope, Values, bounded, every, linear};
 
-pub(crate) const GEAR_EFFICIENCY: Effect = Effect {
+pub(in crate::arm::effects) const GEAR_EFFICIENCY: Effect = Effect {
     id: "gear_efficiency",
     channel: Channel::Torque,
     scope: Scope::Joint,

@@ -4,7 +4,7 @@ use crate::arm::robot::LawState;
 
 use crate::arm::effects::effect::{Channel, Effect, Form, Scope, Values, bounded, every, linear};
 
-pub(crate) const LOAD_FRICTION: Effect = Effect {
+pub(in crate::arm::effects) const LOAD_FRICTION: Effect = Effect {
     id: "load_friction",
     channel: Channel::Torque,
     scope: Scope::Joint,

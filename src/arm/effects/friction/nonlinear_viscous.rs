@@ -6,7 +6,7 @@ use crate::arm::effects::effect::{
     Channel, Effect, Form, Scope, Values, bounded, every, free, linear, shape,
 };
 
-pub(crate) const NONLINEAR_VISCOUS: Effect = Effect {
+pub(in crate::arm::effects) const NONLINEAR_VISCOUS: Effect = Effect {
     id: "nonlinear_viscous",
     channel: Channel::Torque,
     scope: Scope::Joint,

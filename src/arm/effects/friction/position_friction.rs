@@ -7,7 +7,7 @@ use crate::arm::effects::effect::{
 };
 use crate::arm::effects::waves::AMPLITUDE_AND_PHASE;
 
-pub(crate) const POSITION_FRICTION: Effect = Effect {
+pub(in crate::arm::effects) const POSITION_FRICTION: Effect = Effect {
     id: "position_friction",
     channel: Channel::Torque,
     scope: Scope::Joint,

@@ -3,7 +3,7 @@
 use crate::arm::effects::effect::{Channel, Effect, Form, Scope, bounded, every, shape};
 use crate::arm::effects::motion::Motion;
 
-pub(crate) const PRESLIDING: Effect = Effect {
+pub(in crate::arm::effects) const PRESLIDING: Effect = Effect {
     id: "presliding",
     channel: Channel::Torque,
     scope: Scope::Joint,

@@ -6,7 +6,7 @@ use crate::arm::effects::effect::{
     Channel, Effect, Form, Scope, Values, bounded, every, free, linear, shape,
 };
 
-pub(crate) const STRIBECK: Effect = Effect {
+pub(in crate::arm::effects) const STRIBECK: Effect = Effect {
     id: "stribeck",
     channel: Channel::Torque,
     scope: Scope::Joint,

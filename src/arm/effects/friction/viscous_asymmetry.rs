@@ -4,7 +4,7 @@ use crate::arm::robot::LawState;
 
 use crate::arm::effects::effect::{Channel, Effect, Form, Scope, Values, every, free, linear};
 
-pub(crate) const VISCOUS_ASYMMETRY: Effect = Effect {
+pub(in crate::arm::effects) const VISCOUS_ASYMMETRY: Effect = Effect {
     id: "viscous_asymmetry",
     channel: Channel::Torque,
     scope: Scope::Joint,

@@ -6,7 +6,7 @@ use crate::arm::effects::effect::{
     Channel, Effect, Form, Scope, Values, bounded, every, free, linear, shape,
 };
 
-pub(crate) const WARM_UP: Effect = Effect {
+pub(in crate::arm::effects) const WARM_UP: Effect = Effect {
     id: "warm_up",
     channel: Channel::Torque,
     scope: Scope::Joint,

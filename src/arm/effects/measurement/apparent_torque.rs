@@ -4,7 +4,7 @@ use crate::arm::robot::Model;
 
 use crate::arm::effects::effect::{Channel, Effect, Form, Scope, every, free, linear};
 
-pub(crate) const APPARENT_TORQUE: Effect = Effect {
+pub(in crate::arm::effects) const APPARENT_TORQUE: Effect = Effect {
     id: "apparent_torque",
     channel: Channel::Torque,
     scope: Scope::Joint,

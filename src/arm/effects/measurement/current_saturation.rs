@@ -3,7 +3,7 @@
 use crate::arm::effects::effect::{Channel, Effect, Form, Scope, bounded, every, linear, shape};
 use crate::arm::effects::motion::Motion;
 
-pub(crate) const CURRENT_SATURATION: Effect = Effect {
+pub(in crate::arm::effects) const CURRENT_SATURATION: Effect = Effect {
     id: "current_saturation",
     channel: Channel::Torque,
     scope: Scope::Joint,

@@ -3,7 +3,7 @@
 use crate::arm::effects::effect::{Channel, Effect, Form, Scope, bounded, every};
 use crate::arm::effects::motion::Motion;
 
-pub(crate) const CURRENT_SIGN: Effect = Effect {
+pub(in crate::arm::effects) const CURRENT_SIGN: Effect = Effect {
     id: "current_sign",
     channel: Channel::Torque,
     scope: Scope::Joint,

@@ -2,7 +2,7 @@
 
 use crate::arm::effects::effect::{Channel, Effect, Form, Scope, bounded, every, linear};
 
-pub(crate) const ENCODER_OFFSET: Effect = Effect {
+pub(in crate::arm::effects) const ENCODER_OFFSET: Effect = Effect {
     id: "encoder_offset",
     channel: Channel::Torque,
     scope: Scope::Joint,

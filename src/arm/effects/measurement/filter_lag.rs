@@ -6,7 +6,7 @@ use crate::arm::effects::effect::{
 use crate::arm::effects::motion::Motion;
 use crate::arm::effects::response::Response;
 
-pub(crate) const FILTER_LAG: Effect = Effect {
+pub(in crate::arm::effects) const FILTER_LAG: Effect = Effect {
     id: "filter_lag",
     channel: Channel::Torque,
     scope: Scope::Robot,

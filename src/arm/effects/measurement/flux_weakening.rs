@@ -3,7 +3,7 @@
 use crate::arm::effects::effect::{Channel, Effect, Form, Scope, bounded, every, linear, shape};
 use crate::arm::effects::motion::Motion;
 
-pub(crate) const FLUX_WEAKENING: Effect = Effect {
+pub(in crate::arm::effects) const FLUX_WEAKENING: Effect = Effect {
     id: "flux_weakening",
     channel: Channel::Torque,
     scope: Scope::Joint,

@@ -6,7 +6,7 @@ use crate::arm::effects::effect::{
 use crate::arm::effects::motion::Motion;
 use crate::arm::effects::response::Response;
 
-pub(crate) const TIME_DELAY: Effect = Effect {
+pub(in crate::arm::effects) const TIME_DELAY: Effect = Effect {
     id: "time_delay",
     channel: Channel::Torque,
     scope: Scope::Robot,

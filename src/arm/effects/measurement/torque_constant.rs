@@ -2,7 +2,7 @@
 
 use crate::arm::effects::effect::{Channel, Effect, Form, Scope, bounded, every, linear};
 
-pub(crate) const TORQUE_CONSTANT: Effect = Effect {
+pub(in crate::arm::effects) const TORQUE_CONSTANT: Effect = Effect {
     id: "torque_constant",
     channel: Channel::Torque,
     scope: Scope::Joint,

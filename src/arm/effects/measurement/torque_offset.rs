@@ -2,7 +2,7 @@
 
 use crate::arm::effects::effect::{Channel, Effect, Form, Scope, every, free, linear};
 
-pub(crate) const TORQUE_OFFSET: Effect = Effect {
+pub(in crate::arm::effects) const TORQUE_OFFSET: Effect = Effect {
     id: "torque_offset",
     channel: Channel::Torque,
     scope: Scope::Joint,

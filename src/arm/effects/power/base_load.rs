@@ -2,7 +2,7 @@
 
 use crate::arm::effects::effect::{Channel, Effect, Form, Scope, free};
 
-pub(crate) const BASE_LOAD: Effect = Effect {
+pub(in crate::arm::effects) const BASE_LOAD: Effect = Effect {
     id: "base_load",
     channel: Channel::Power,
     scope: Scope::Robot,

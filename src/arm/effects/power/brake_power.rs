@@ -4,7 +4,7 @@ use crate::arm::robot::Model;
 
 use crate::arm::effects::effect::{Channel, Effect, Form, Scope, free};
 
-pub(crate) const BRAKE_POWER: Effect = Effect {
+pub(in crate::arm::effects) const BRAKE_POWER: Effect = Effect {
     id: "brake_power",
     channel: Channel::Power,
     scope: Scope::Robot,

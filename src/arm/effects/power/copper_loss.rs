@@ -4,7 +4,7 @@ use crate::arm::robot::Model;
 
 use crate::arm::effects::effect::{Channel, Effect, Form, Scope, every, free};
 
-pub(crate) const COPPER_LOSS: Effect = Effect {
+pub(in crate::arm::effects) const COPPER_LOSS: Effect = Effect {
     id: "copper_loss",
     channel: Channel::Power,
     scope: Scope::Joint,

@@ -2,7 +2,7 @@
 
 use crate::arm::effects::effect::{Channel, Effect, Form, Scope, free};
 
-pub(crate) const INVERTER_LOSS: Effect = Effect {
+pub(in crate::arm::effects) const INVERTER_LOSS: Effect = Effect {
     id: "inverter_loss",
     channel: Channel::Power,
     scope: Scope::Robot,

@@ -2,7 +2,7 @@
 
 use crate::arm::effects::effect::{Channel, Effect, Form, Scope, every, free};
 
-pub(crate) const IRON_LOSS: Effect = Effect {
+pub(in crate::arm::effects) const IRON_LOSS: Effect = Effect {
     id: "iron_loss",
     channel: Channel::Power,
     scope: Scope::Joint,

@@ -2,7 +2,7 @@
 
 use crate::arm::effects::effect::{Channel, Effect, Form, Scope};
 
-pub(crate) const NO_REGENERATION: Effect = Effect {
+pub(in crate::arm::effects) const NO_REGENERATION: Effect = Effect {
     id: "no_regeneration",
     channel: Channel::Power,
     scope: Scope::Robot,

@@ -7,7 +7,7 @@ use crate::arm::robot::Model;
 use crate::arm::effects::effect::{Channel, Effect, Form, Scope, bounded, free, linear};
 use crate::arm::effects::waves::AMPLITUDE_AND_PHASE;
 
-pub(crate) const BASE_TILT: Effect = Effect {
+pub(in crate::arm::effects) const BASE_TILT: Effect = Effect {
     id: "base_tilt",
     channel: Channel::Torque,
     scope: Scope::Robot,

@@ -19,13 +19,13 @@ pub fn added(link: &Link, frame: &Isometry3<f64>, body: &[f64]) -> Link {
 }
 
 /// Mass, centre of mass and moments about it, from moments about an origin.
-pub(crate) fn about_centre(x: &[f64]) -> Vec<f64> {
+pub(in crate::arm::effects) fn about_centre(x: &[f64]) -> Vec<f64> {
     let Link { mass, com: c, inertia: i } = link_of(x);
     vec![mass, c.x, c.y, c.z, i.m11, i.m22, i.m33, i.m12, i.m13, i.m23]
 }
 
 /// Mass, first moments and moments about the origin, from moments about the centre of mass.
-pub(crate) fn about_origin(x: &[f64]) -> Vec<f64> {
+pub(in crate::arm::effects) fn about_origin(x: &[f64]) -> Vec<f64> {
     let mut all = [0.0; RIGID];
     all.iter_mut().zip(x).for_each(|(to, from)| *to = *from);
     let [mass, x, y, z, xx, yy, zz, xy, xz, yz] = all;

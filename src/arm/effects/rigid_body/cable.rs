@@ -3,7 +3,7 @@
 use super::springs::{STIFFNESS_AND_CENTRE, spring};
 use crate::arm::effects::effect::{Channel, Effect, Form, Scope, free, linear};
 
-pub(crate) const CABLE: Effect = Effect {
+pub(in crate::arm::effects) const CABLE: Effect = Effect {
     id: "cable",
     channel: Channel::Torque,
     scope: Scope::Joint,

@@ -13,8 +13,9 @@ use crate::arm::effects::effect::{
 };
 use crate::arm::effects::motion::Motion;
 use crate::arm::effects::scale::Scale;
+use crate::arm::effects::window::{in_period, within};
 
-pub(crate) const CONTACT: Effect = Effect {
+pub(in crate::arm::effects) const CONTACT: Effect = Effect {
     id: "contact",
     channel: Channel::Torque,
     scope: Scope::Robot,
@@ -97,15 +98,6 @@ fn share_of(t: f64, window: &[f64]) -> f64 {
     if *rise > 0.0 { ((PI * x).sin() / (PI * rise).sin()).min(1.0) } else { 1.0 }
 }
 
-/// Whether a time is in a periodic window.
-pub(crate) fn within(t: f64, start: f64, end: f64, period: f64) -> bool {
-    (start..=end).contains(&in_period(t, period))
-}
-
-fn in_period(t: f64, period: f64) -> f64 {
-    if period > 0.0 && t.is_finite() { t.rem_euclid(period) } else { t }
-}
-
 /// A massless arm with a mass at its flange, whose gravity is the force.
 fn pulled(model: &Model, force: &Vector3<f64>, size: f64) -> Model {
     let mut pulled = model.clone();
@@ -128,13 +120,6 @@ fn pulled(model: &Model, force: &Vector3<f64>, size: f64) -> Model {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn windows_come_again() {
-        assert!(within(13.0, 2.5, 3.5, 10.0));
-        assert!(!within(13.0, 2.5, 3.5, 0.0));
-        assert!(!within(f64::INFINITY, 2.5, 3.5, 10.0));
-    }
 
     #[test]
     fn forces_grow() {

@@ -3,7 +3,7 @@
 use super::springs::{STIFFNESS_AND_CENTRE, spring};
 use crate::arm::effects::effect::{Channel, Effect, Form, Scope, free, linear};
 
-pub(crate) const GRAVITY_SPRING: Effect = Effect {
+pub(in crate::arm::effects) const GRAVITY_SPRING: Effect = Effect {
     id: "gravity_spring",
     channel: Channel::Torque,
     scope: Scope::Joint,

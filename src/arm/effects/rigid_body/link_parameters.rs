@@ -8,7 +8,7 @@ use super::bodies::added;
 use crate::arm::effects::effect::{Channel, Effect, Form, Scope, every, free, linear};
 use crate::arm::effects::scale::Scale;
 
-pub(crate) const LINK_PARAMETERS: Effect = Effect {
+pub(in crate::arm::effects) const LINK_PARAMETERS: Effect = Effect {
     id: "link_parameters",
     channel: Channel::Torque,
     scope: Scope::Joint,

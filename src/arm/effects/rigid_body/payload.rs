@@ -5,7 +5,7 @@ use crate::arm::robot::Model;
 use super::bodies::{about_centre, about_origin, added};
 use crate::arm::effects::effect::{Channel, Effect, Form, Published, Scope, free, linear};
 
-pub(crate) const PAYLOAD: Effect = Effect {
+pub(in crate::arm::effects) const PAYLOAD: Effect = Effect {
     id: "payload",
     channel: Channel::Torque,
     scope: Scope::Robot,

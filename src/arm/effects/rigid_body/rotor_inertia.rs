@@ -4,7 +4,7 @@ use crate::arm::robot::Model;
 
 use crate::arm::effects::effect::{Channel, Effect, Form, Scope, every, free, linear};
 
-pub(crate) const ROTOR_INERTIA: Effect = Effect {
+pub(in crate::arm::effects) const ROTOR_INERTIA: Effect = Effect {
     id: "rotor_inertia",
     channel: Channel::Torque,
     scope: Scope::Joint,

@@ -5,7 +5,7 @@ use crate::arm::robot::LawState;
 use crate::arm::effects::effect::{Published, Values};
 
 /// Coordinates are stiffness and torque at 0; parameters are stiffness and centre.
-pub(crate) const STIFFNESS_AND_CENTRE: Published = Published {
+pub(in crate::arm::effects) const STIFFNESS_AND_CENTRE: Published = Published {
     parameters: |x| match x {
         [stiffness, at_zero, ..] if *stiffness != 0.0 => vec![*stiffness, -at_zero / stiffness],
         _ => vec![0.0, 0.0],
@@ -17,6 +17,6 @@ pub(crate) const STIFFNESS_AND_CENTRE: Published = Published {
 };
 
 /// Torque against a spring \[Nm\].
-pub(crate) fn spring(state: &LawState, [stiffness, at_zero, ..]: &Values) -> f64 {
+pub(in crate::arm::effects) fn spring(state: &LawState, [stiffness, at_zero, ..]: &Values) -> f64 {
     stiffness * state.q + at_zero
 }

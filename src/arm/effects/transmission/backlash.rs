@@ -6,7 +6,7 @@ use crate::arm::effects::effect::{
 };
 use crate::arm::effects::motion::Motion;
 
-pub(crate) const BACKLASH: Effect = Effect {
+pub(in crate::arm::effects) const BACKLASH: Effect = Effect {
     id: "backlash",
     channel: Channel::Torque,
     scope: Scope::Joint,

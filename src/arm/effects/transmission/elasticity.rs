@@ -7,7 +7,7 @@ use crate::arm::effects::effect::{
 };
 use crate::arm::effects::motion::Motion;
 
-pub(crate) const ELASTICITY: Effect = Effect {
+pub(in crate::arm::effects) const ELASTICITY: Effect = Effect {
     id: "elasticity",
     channel: Channel::Torque,
     scope: Scope::Joint,
@@ -37,7 +37,7 @@ fn added(motion: &Motion<'_>, joint: usize, values: &[f64]) -> Vec<(usize, Vec<f
 
 /// Change of the torques if the link is `behind` \[rad\] the motor: rotor torques at the logged
 /// angle, rigid-body torques at the link angle.
-pub(crate) fn displaced(
+pub(in crate::arm::effects) fn displaced(
     motion: &Motion<'_>,
     joint: usize,
     behind: &[f64],

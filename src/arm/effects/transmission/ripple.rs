@@ -8,7 +8,7 @@ use crate::arm::effects::effect::{
 use crate::arm::effects::scale::Scale;
 use crate::arm::effects::waves::AMPLITUDE_AND_PHASE;
 
-pub(crate) const RIPPLE: Effect = Effect {
+pub(in crate::arm::effects) const RIPPLE: Effect = Effect {
     id: "ripple",
     channel: Channel::Torque,
     scope: Scope::Joint,

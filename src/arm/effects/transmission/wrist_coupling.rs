@@ -6,7 +6,7 @@ use crate::arm::effects::effect::{
     Channel, Coordinate, Effect, Form, Role, Scope, free, linear, shaped,
 };
 
-pub(crate) const WRIST_COUPLING: Effect = Effect {
+pub(in crate::arm::effects) const WRIST_COUPLING: Effect = Effect {
     id: "wrist_coupling",
     channel: Channel::Torque,
     scope: Scope::Robot,

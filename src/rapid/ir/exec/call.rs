@@ -1,6 +1,6 @@
 //! Calls of the program's own routines.
 
-use super::eval::{declared_twice, store};
+use super::eval::declared_twice;
 use super::executor::{Cell, CellId, Executor, Frame, MAX_CALL_DEPTH};
 use super::flow::{Flow, Raised};
 use crate::rapid::ir::hir::{
@@ -10,25 +10,6 @@ use crate::rapid::ir::movement::Unresolved;
 use crate::rapid::ir::program::{RoutineId, Symbol};
 use crate::rapid::ir::value::{Datum, Dependence, Origin};
 use crate::rapid::text::Span;
-
-/// A part of data that a routine has by reference.
-struct Part {
-    parameter: CellId,
-    whole: CellId,
-    /// `None` for a part that is not known.
-    indices: Option<Vec<usize>>,
-    /// The value at the call.
-    before: Datum,
-    span: Span,
-}
-
-/// Data of which a routine has parts.
-struct Lent {
-    whole: CellId,
-    datum: Datum,
-    /// Writes before the call.
-    writes: u64,
-}
 
 impl Executor<'_> {
     /// A call statement: a routine of the program or a RAPID instruction.
@@ -102,97 +83,15 @@ impl Executor<'_> {
                 parts.extend(part);
             }
         }
-        let wholes = self.lend(&parts);
+        let lent = self.lent.len();
+        let wholes = self.lend(parts);
         let flow = self.enter(id, names, present, Some(at));
-        for whole in wholes {
-            self.take_back(whole, &parts);
-        }
+        self.take_back(lent, wholes);
         flow
     }
 
-    /// A component or an element that is passed by reference. Its indices are evaluated once.
-    fn part_by_reference(&mut self, param: &Param, expr: &Expr) -> Option<Part> {
-        if param.mode == ParamMode::In || matches!(expr.kind, ExprKind::Ref(_)) {
-            return None;
-        }
-        let whole = self.cell_of(expr.base()?).filter(|whole| !self.cells[*whole].read_only)?;
-        let expr = self.with_fixed_indices(expr);
-        let type_key = self.cells[whole].value.type_key.clone();
-        let indices = self.place(&expr, &type_key).map(|(indices, _)| indices);
-        let parameter = self.bind(param, &expr);
-        let before = self.cells[parameter].value.datum.clone();
-        Some(Part { parameter, whole, indices, before, span: expr.span })
-    }
-
-    /// The expression with its indices as numbers; an unknown one has no place.
-    fn with_fixed_indices(&mut self, expr: &Expr) -> Expr {
-        let kind = match &expr.kind {
-            ExprKind::Field(base, name) => {
-                ExprKind::Field(Box::new(self.with_fixed_indices(base)), name.clone())
-            }
-            ExprKind::Index(base, indices) => {
-                let base = Box::new(self.with_fixed_indices(base));
-                let fixed = indices.iter().map(|index| {
-                    let number = self.eval(index).datum.num();
-                    let kind = number.map_or(ExprKind::Placeholder, ExprKind::Num);
-                    Expr { kind, span: index.span }
-                });
-                ExprKind::Index(base, fixed.collect())
-            }
-            other => other.clone(),
-        };
-        Expr { kind, span: expr.span }
-    }
-
-    /// Makes data unknown while a routine has a part of them: it may read and write the same part by
-    /// either name.
-    fn lend(&mut self, parts: &[Part]) -> Vec<Lent> {
-        let mut wholes: Vec<Lent> = Vec::new();
-        for part in parts {
-            if wholes.iter().any(|lent| lent.whole == part.whole) {
-                continue;
-            }
-            let reason = "a part of it is passed by reference".to_owned();
-            let cell = &mut self.cells[part.whole];
-            let datum = std::mem::replace(&mut cell.value.datum, Datum::unknown(reason, part.span));
-            wholes.push(Lent { whole: part.whole, datum, writes: cell.writes });
-        }
-        wholes
-    }
-
-    /// Stores what the routine wrote to the parameters of the parts.
-    fn take_back(&mut self, lent: Lent, parts: &[Part]) {
-        let parts: Vec<&Part> = parts.iter().filter(|part| part.whole == lent.whole).collect();
-        let is_written = self.cells[lent.whole].writes != lent.writes;
-        let overlap = parts.iter().enumerate().any(|(n, part)| {
-            let Some(own) = &part.indices else { return true };
-            let others = parts[..n].iter().filter_map(|other| other.indices.as_deref());
-            others.into_iter().any(|other| own.starts_with(other) || other.starts_with(own))
-        });
-        if is_written || overlap {
-            // It stays unknown.
-            self.record_change(Some(lent.whole));
-            return;
-        }
-        self.cells[lent.whole].value.datum = lent.datum;
-        for part in parts {
-            let Cell { value, history, input, .. } = &self.cells[part.parameter];
-            if value.datum == part.before {
-                continue;
-            }
-            let (datum, history, input) = (value.datum.clone(), history.clone(), input.clone());
-            let whole = &mut self.cells[part.whole];
-            store(&mut whole.value.datum, part.indices.as_deref().unwrap_or_default(), datum);
-            whole.history.join(&history);
-            if input.is_some() {
-                whole.input = input;
-            }
-            self.record_change(Some(part.whole));
-        }
-    }
-
     /// The cell of a parameter: that of the argument if passed by reference, else a new one.
-    fn bind(&mut self, param: &Param, expr: &Expr) -> CellId {
+    pub(super) fn bind(&mut self, param: &Param, expr: &Expr) -> CellId {
         if param.mode != ParamMode::In
             && let ExprKind::Ref(name) = &expr.kind
             && let Some(cell) = self.cell_of(name)

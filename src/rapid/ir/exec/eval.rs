@@ -335,15 +335,17 @@ impl Executor<'_> {
     pub(super) fn write(&mut self, cell: CellId, target: &Expr, datum: Datum) -> bool {
         let type_key = self.cells[cell].value.type_key.clone();
         let place = self.place(target, &type_key);
-        self.cells[cell].writes += 1;
         let slot = &mut self.cells[cell].value.datum;
-        if let Some((indices, _)) = place {
-            return store(slot, &indices, datum);
-        }
-        let name = target.base().map_or("", |name| name.text.as_str());
-        let reason = format!("it was written at a place in '{name}' not known");
-        *slot = Datum::unknown(reason, target.span);
-        true
+        let changed = if let Some((indices, _)) = place {
+            store(slot, &indices, datum)
+        } else {
+            let name = target.base().map_or("", |name| name.text.as_str());
+            let reason = format!("it was written at a place in '{name}' not known");
+            *slot = Datum::unknown(reason, target.span);
+            true
+        };
+        self.mark_other_names(cell);
+        changed
     }
 
     /// The component indices of a part of data of this type, outermost first, and its type.

@@ -7,7 +7,7 @@ use super::machine::Machine;
 use crate::rapid::ir::hir::Expr;
 use crate::rapid::ir::movement::Settings;
 use crate::rapid::ir::program::{DataId, Program, RoutineId};
-use crate::rapid::ir::value::{Origin, Value};
+use crate::rapid::ir::value::{Datum, Origin, Value};
 use crate::rapid::text::Span;
 
 /// A statement that was not executed exactly, with the reason.
@@ -48,21 +48,12 @@ pub(super) struct Cell {
     pub(super) read_only: bool,
     /// An input that the value depends on.
     pub(super) input: Option<Arc<str>>,
-    /// Counts the statements that wrote to it.
-    pub(super) writes: u64,
 }
 
 impl Cell {
     /// A cell that can be written, with a value that depends on no input.
     pub(super) fn new(value: Value, reading: Origin) -> Cell {
-        Cell {
-            value,
-            reading,
-            history: Origin::default(),
-            read_only: false,
-            input: None,
-            writes: 0,
-        }
+        Cell { value, reading, history: Origin::default(), read_only: false, input: None }
     }
 }
 
@@ -101,6 +92,8 @@ pub(super) struct Executor<'a> {
     /// Cells below this index may hold module data and are kept when a routine returns.
     pub(super) kept_cells: usize,
     pub(super) frames: Vec<Frame>,
+    /// The components and elements that the active routines have by reference, innermost last.
+    pub(super) lent: Vec<LentPart>,
     /// Level of each signal that the program has set or waited for.
     pub(super) signals: BTreeMap<String, f64>,
     pub(super) settings: Arc<Settings>,
@@ -140,6 +133,7 @@ impl<'a> Executor<'a> {
             cells: Vec::new(),
             globals: BTreeMap::new(),
             kept_cells: 0,
+            lent: Vec::new(),
             frames: Vec::new(),
             signals: BTreeMap::new(),
             settings: Arc::new(Settings::default()),
@@ -184,5 +178,32 @@ impl<'a> Executor<'a> {
         if !self.execution.assumed.contains(&text) {
             self.execution.assumed.push(text);
         }
+    }
+}
+
+/// A part of data that a routine has by reference.
+pub(super) struct LentPart {
+    pub(super) parameter: CellId,
+    pub(super) whole: CellId,
+    /// Its component indices; `None` for a part that is not known.
+    pub(super) indices: Option<Vec<usize>>,
+    pub(super) span: Span,
+    /// Whether the routine has written to the parameter.
+    pub(super) is_written: bool,
+    /// Whether the data were written by another name.
+    pub(super) is_stale: bool,
+}
+
+impl LentPart {
+    pub(super) fn overlaps(&self, other: &LentPart) -> bool {
+        self.whole == other.whole
+            && match (&self.indices, &other.indices) {
+                (Some(own), Some(other)) => own.starts_with(other) || other.starts_with(own),
+                _ => true,
+            }
+    }
+
+    pub(super) fn unknown(&self) -> Datum {
+        Datum::unknown("a part of it is passed by reference", self.span)
     }
 }

@@ -5,10 +5,10 @@ use super::executor::{Cell, Executor};
 use super::flow::{Flow, number_text};
 use super::waits::Length;
 use crate::rapid::builtins::{self, ArgumentPlace, Count, Effect, Instruction, Level, Wait};
-use crate::rapid::ir::hir::{Arg, Stmt};
+use crate::rapid::ir::hir::{Arg, Expr, ExprKind, Stmt};
 use crate::rapid::ir::movement::Output;
 use crate::rapid::ir::value::{Datum, Dependence, Value};
-use crate::rapid::ir::walk::placed;
+use crate::rapid::ir::walk::arguments_with_places;
 
 impl Executor<'_> {
     /// A call of a routine that the program does not declare.
@@ -92,14 +92,17 @@ impl Executor<'_> {
         how: &str,
         may_change: impl Fn(ArgumentPlace<'_>, &Cell) -> bool,
     ) {
-        for (place, expr) in placed(args) {
+        for (place, expr) in arguments_with_places(args) {
             if let Some(name) = expr.base()
                 && let Some(cell) = self.cell_of(name)
                 && !self.cells[cell].read_only
                 && may_change(place, &self.cells[cell])
             {
                 let reason = format!("'{}' {how}", name.text);
-                self.write(cell, expr, Datum::unknown(reason, expr.span));
+                // Indices with calls have been evaluated: they do not run again.
+                let whole = Expr { kind: ExprKind::Ref(name.clone()), span: expr.span };
+                let target = if expr.calls().is_empty() { expr } else { &whole };
+                self.write(cell, target, Datum::unknown(reason, expr.span));
                 self.record_change(Some(cell));
             }
         }

@@ -22,6 +22,7 @@ mod modes;
 mod motion;
 mod operators;
 mod polling;
+mod references;
 mod settings;
 mod system;
 #[cfg(test)]

@@ -87,14 +87,11 @@ impl Executor<'_> {
             self.unresolved(stmt.span, reason.clone());
             Unresolved { span: stmt.span, reason, moves: true }
         });
-        if signature.kind == MoveKind::Search {
-            let instruction = builtins::instruction(&text.to_lowercase());
-            if let Some(instruction) = instruction {
-                let how = "is found by a search";
-                self.mark_unknown_if(arguments.all, how, |place, _| {
-                    instruction.may_write_to(place)
-                });
-            }
+        if signature.kind == MoveKind::Search
+            && let Some(instruction) = builtins::instruction(&text.to_lowercase())
+        {
+            let how = "is found by a search";
+            self.mark_unknown_if(arguments.all, how, |place, _| instruction.may_write_to(place));
         }
         if let Some(what) = not_simulated(signature.kind) {
             self.unresolved(stmt.span, what);

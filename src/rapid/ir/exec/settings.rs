@@ -52,6 +52,7 @@ impl Executor<'_> {
             | Setting::PDispOff
             | Setting::PDispSet
             | Setting::SpeedRefresh
+            | Setting::SystemData
             | Setting::VelSet => self.apply_setting(stmt, text, setting, arguments),
         }
     }
@@ -111,14 +112,6 @@ impl Executor<'_> {
             Setting::ConfL => self.settings_mut().conf_linear = on,
             Setting::GripLoad => {
                 let datum = first()?;
-                // `SetSysData` takes tools and work objects, too; movements name their own.
-                let type_key = values.first().map(|value| &*value.type_key);
-                if matches!(type_key, Some("tooldata" | "wobjdata")) {
-                    return Ok(());
-                }
-                if arguments.has_option("objectname") {
-                    return Err(NotSet::Unknown);
-                }
                 let load = convert::load(datum).map_err(|why| {
                     self.explain_argument(arguments.positional[0], datum, &why);
                     NotSet::Unknown
@@ -126,7 +119,15 @@ impl Executor<'_> {
                 let settings = self.settings_mut();
                 settings.grip_load = Some(load);
                 settings.grip_load_data = Some(datum.clone());
+                self.clear_unmodelled(&["gripload", "setsysdata"]);
             }
+            Setting::SystemData => match values.first().map(|value| &*value.type_key) {
+                // The name of the object is computed.
+                _ if arguments.has_option("objectname") => return Err(NotSet::Unknown),
+                // Movements name their own.
+                Some("tooldata" | "wobjdata") => {}
+                _ => return self.change_setting(Setting::GripLoad, values, arguments),
+            },
             Setting::PDispSet => {
                 let pose = convert::pose(first()?, "the displacement");
                 self.settings_mut().displacement = Some(pose.map_err(|_| NotSet::Unknown)?);

@@ -174,12 +174,21 @@ fn displacements_follow_from_two_points() {
 
 #[test]
 fn waits_for_operators_and_tasks_have_no_stated_time() {
-    for wait in
-        ["WaitSyncTask sync1, taskList", "TPReadFK nKey, \"x\", \"\", \"\", \"\", \"\", \"a\""]
-    {
+    for wait in [
+        "WaitSyncTask sync1, taskList",
+        "TPReadFK nKey, \"x\", \"\", \"\", \"\", \"\", \"a\"",
+        "WaitLoad load1",
+        "SyncMoveOn sync1, taskList",
+        "SyncMoveOff sync1",
+        "SocketConnect socket1, \"192.168.0.1\", 1025",
+        "SocketReceiveFrom socket1 \\Str:=text, sender, port",
+    ] {
         let name = wait.split(' ').next().expect("a name");
         assert_eq!(events(&format!("{wait};")), [format!("{name} None")]);
     }
+    assert_eq!(events("WaitRob \\InPos;"), ["WaitRob Some(0.0)"]);
+    let (events_of_raise, _) = executed("RaiseToUser \\Continue;", 0);
+    assert!(events_of_raise[0].ends_with("(true)"), "{events_of_raise:?}");
     assert_eq!(events("WaitTime \\InPos, 0.5;"), ["WaitTime Some(0.5)"]);
     assert_eq!(
         events("nKey:=1; TPReadFK nKey, \"\", \"\", \"\", \"\", \"\", \"\"; WaitTime nKey;").len(),
@@ -253,16 +262,63 @@ fn parts_are_passed_by_reference() {
         0,
     );
     assert_eq!(events_of_next, ["SetGO goX=12", "SetGO goY=2"]);
-    // What is read or written by both names is not known, and neither is a part that is not known.
+    let (events_of_next, _) = executed_with(
+        &format!("{declarations} {next}"),
+        "nKey:=1; bFlag:=StrToVal(\"5\", list{next(nKey)}); SetGO goY, nKey;",
+        0,
+    );
+    assert_eq!(events_of_next, ["SetGO goY=2"]);
+    // An input that chooses the part decides what is done with it.
+    let one = "PROC one(INOUT num x) IF x=2 MoveJ p10, v100, fine, tool0; ENDPROC";
+    let (_, reasons) = executed_with(&format!("{declarations} {one}"), "one list{diPart+1};", 0);
+    assert!(reasons.iter().any(|reason| reason.contains("depends on inputs")), "{reasons:?}");
+    // What may be the same data by another name is not known, and neither is a part that is not known.
     for (routine, call) in [
         ("PROC both(INOUT num x) x:=5; IF list{2}=5 Set doA; ENDPROC", "both list{2};"),
+        ("PROC both(INOUT num x) list{2}:=7; IF x=7 Set doA; ENDPROC", "both list{2};"),
+        ("PROC both(INOUT num x) list:=[7,7,7]; IF x=7 Set doA; ENDPROC", "both list{2};"),
         ("PROC both(INOUT num x) list{1}:=7; x:=5; ENDPROC", "both list{2}; IF list{1}=7 Set doA;"),
+        (
+            "PROC both(INOUT num x) list:=[7,7,7]; x:=5; ENDPROC",
+            "both list{2}; IF list{2}=5 Set doA;",
+        ),
+        (
+            "PROC two(INOUT num x, INOUT num y) x:=5; IF y=5 Set doA; ENDPROC",
+            "two list{2}, list{2};",
+        ),
+        (
+            "PROC inner(INOUT num x) x:=5; ENDPROC PROC both(INOUT num x) inner list{2}; ENDPROC",
+            "both list{1}; IF list{2}=5 Set doA;",
+        ),
+        (
+            "PROC inner(INOUT num x) list{2}:=7; IF x=7 Set doA; ENDPROC
+            PROC both(INOUT num x) inner x; ENDPROC",
+            "both list{2};",
+        ),
         ("PROC both(INOUT num x) x:=5; ENDPROC", "both list{foreign()}; IF list{1}=1 Set doA;"),
     ] {
         let (_, reasons) = executed_with(&format!("{declarations} {routine}"), call, 0);
         let of_condition = |reason: &String| reason.contains("condition is not known");
         assert!(reasons.iter().any(of_condition), "{routine}: {reasons:?}");
     }
+    // Two parts that do not overlap, and a part of a part.
+    let more = "PROC swap(INOUT num x, INOUT num y) VAR num z; z:=x; x:=y; y:=z; ENDPROC
+        PROC outer2(INOUT pos p) add p.x; ENDPROC";
+    let events_of_more =
+        |statements: &str| executed_with(&format!("{declarations} {more}"), statements, 0).0;
+    assert_eq!(
+        events_of_more("swap list{1}, list{3}; SetGO goX, list{1}; SetGO goY, list{3};"),
+        ["SetGO goX=3", "SetGO goY=1"]
+    );
+    assert_eq!(
+        events_of_more("pVar:=p10; outer2 pVar.trans; MoveL pVar, v100, fine, tool0;"),
+        ["MoveL 110.0"]
+    );
+    // A loop on a part that an input chooses waits for the input.
+    let get = "FUNC num get(INOUT num x) RETURN x; ENDFUNC";
+    let (_, reasons) =
+        executed_with(&format!("{declarations} {get}"), "WHILE get(list{giX+1})=1 DO ENDWHILE", 0);
+    assert!(!reasons.iter().any(|reason| reason.contains("does not end")), "{reasons:?}");
     // An argument by value stays.
     assert_eq!(
         events("pVar:=p10; outer \\dx:=5; MoveL pVar, v100, fine, tool0;"),
@@ -273,6 +329,7 @@ fn parts_are_passed_by_reference() {
 #[test]
 fn the_load_of_the_system_is_the_load_of_the_robot() {
     let data = "PERS loaddata load8:=[8,[0,0,100],[1,0,0,0],0,0,0];";
+    let others = |statements: &str| executed_with(data, statements, 0).0;
     let masses = |statements: &str| {
         struct Masses(Vec<Option<f64>>);
         impl Machine for Masses {
@@ -295,4 +352,8 @@ fn the_load_of_the_system_is_the_load_of_the_robot() {
     let movement = "MoveJ p10, v100, fine, tool0;";
     assert_eq!(masses(&format!("SetSysData load8; {movement}")), [Some(8.0)]);
     assert_eq!(masses(&format!("SetSysData tool0; {movement}")), [None]);
+    // The name of the object is computed: the load is not known until it is stated.
+    let by_name = format!("SetSysData load8 \\ObjectName:=\"heavy\"; {movement}");
+    assert_eq!(others(&by_name), ["MoveJ 100.0 SetSysData"]);
+    assert_eq!(others(&format!("GripLoad loadX; SetSysData load8; {movement}")), ["MoveJ 100.0"]);
 }

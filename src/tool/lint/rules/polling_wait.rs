@@ -35,14 +35,14 @@
 use super::super::context::Context;
 use super::super::flow::Class;
 use super::super::rule::Finding;
-use super::super::statements::{all_blocks, called_name, routines};
-use crate::rapid::ir::hir::{Block, Expr, Stmt, StmtKind};
+use super::super::statements::called_name;
+use crate::rapid::ir::hir::{Block, Expr, Routine, Stmt, StmtKind};
 use crate::rapid::ir::program::RoutineId;
 
 rule!("EW303", "polling-wait", Dwell, Text, Info, "polling_wait.rs");
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
-    for (routine, body) in routines(context.program) {
+    for (routine, body) in context.program.routines() {
         for block in all_blocks(body) {
             for (index, stmt) in block.iter().enumerate() {
                 let before = index.checked_sub(1).map(|before| &block[before]);
@@ -57,6 +57,17 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             }
         }
     }
+}
+
+/// The statement lists of a routine, those inside of statements too.
+fn all_blocks(routine: &Routine) -> Vec<&Block> {
+    let mut blocks: Vec<&Block> = routine.blocks().collect();
+    let mut next = 0;
+    while let Some(block) = blocks.get(next).copied() {
+        blocks.extend(block.iter().flat_map(|stmt| stmt.kind.blocks()));
+        next += 1;
+    }
+    blocks
 }
 
 /// The condition and the statements of a loop, also of one that is made with a jump.
