@@ -352,8 +352,8 @@ fn forbidden_imports_are_found() {
     ];
     for (path, text, message) in cases {
         let found = violations(path, text);
-        let told = found.iter().any(|line| line.contains(message));
-        assert!(told, "{path}: {text}\ngave {found:?} and nothing with '{message}'");
+        let is_found = found.iter().any(|line| line.contains(message));
+        assert!(is_found, "{path}: {text}\ngave {found:?} and nothing with '{message}'");
     }
 }
 

@@ -214,8 +214,9 @@ fn undo_removes_created_folders() {
     fs::write(cell.join("m.mod"), program("", "")).unwrap();
     let before = files(folder.path());
     let path = cell.to_str().unwrap();
-    let (said, code) = said(folder.path(), &["optimize", path, "--emit", "egm", "--in-place"]);
-    assert_eq!(code, Some(0), "{said}");
+    let (messages, code) =
+        messages_of(folder.path(), &["optimize", path, "--emit", "egm", "--in-place"]);
+    assert_eq!(code, Some(0), "{messages}");
     assert!(cell.join("egm").is_dir());
     run(&["optimize", path, "--undo"]);
     assert_eq!(files(folder.path()), before);
@@ -263,7 +264,7 @@ fn unusable_input_names_the_way_out() {
         vec!["simulate", "fixtures/hard/waits.mod", "--start", "1,2,3"],
         vec!["simulate", "fixtures/hard/waits.mod", "--input", "diReady"],
     ];
-    let mut said = String::new();
+    let mut all = String::new();
     for args in cases {
         let output = joulepath(&args);
         assert_eq!(output.status.code(), Some(2), "{args:?}");
@@ -271,11 +272,11 @@ fn unusable_input_names_the_way_out() {
         let message = stderr(&output).replace(folder.path().to_str().unwrap(), "[folder]");
         let messages = message.lines().filter(|line| !line.starts_with("note:"));
         for line in messages {
-            said.push_str(line);
-            said.push('\n');
+            all.push_str(line);
+            all.push('\n');
         }
     }
-    snapshots().bind(|| insta::assert_snapshot!("messages", said));
+    snapshots().bind(|| insta::assert_snapshot!("messages", all));
 }
 
 /// A program with these declarations and statements of `main`, which include two movements.
@@ -299,7 +300,7 @@ const KNOWN: [&str; 2] = ["--robot", KNOWN_LIMITS];
 const ROBOT: [&str; 2] = ["--robot", "IRB1600-10/1.45"];
 
 /// Standard error of a command without its assumptions, and the exit code.
-fn said(folder: &Path, args: &[&str]) -> (String, Option<i32>) {
+fn messages_of(folder: &Path, args: &[&str]) -> (String, Option<i32>) {
     let output = joulepath(&[args, &ROBOT].concat());
     let message = stderr(&output).replace(folder.to_str().unwrap(), "[folder]");
     let lines = message.lines().filter(|line| !line.starts_with("note: assumed"));
@@ -307,9 +308,13 @@ fn said(folder: &Path, args: &[&str]) -> (String, Option<i32>) {
 }
 
 /// Standard error for a program of one file.
-fn said_of(declarations: &str, statements: &str, args: &[&str]) -> (String, Option<i32>) {
+fn messages_of_program(
+    declarations: &str,
+    statements: &str,
+    args: &[&str],
+) -> (String, Option<i32>) {
     let (folder, path) = module(program(declarations, statements));
-    said(folder.path(), &[&["optimize", &path], args].concat())
+    messages_of(folder.path(), &[&["optimize", &path], args].concat())
 }
 
 /// The JSON of a retrofit of a program.
@@ -331,8 +336,8 @@ fn requested_cycle_times_have_bounds() {
     ];
     let mut all = String::new();
     for args in cases {
-        let (said, code) = said_of("", "", args);
-        writeln!(all, "{args:?}: {}\n{said}", code.unwrap()).unwrap();
+        let (messages, code) = messages_of_program("", "", args);
+        writeln!(all, "{args:?}: {}\n{messages}", code.unwrap()).unwrap();
     }
     snapshots().bind(|| insta::assert_snapshot!("time", all));
 }
@@ -368,7 +373,7 @@ fn the_original_runs_where_a_name_has_another_value() {
     let (folder, path) = module(program("", "MoveAbsJ jA,v1000,fine,tP;"));
     let out = folder.path().join("out");
     let options = ["optimize", &path, "--out", out.to_str().unwrap()];
-    let (reported, code) = said(folder.path(), &options);
+    let (reported, code) = messages_of(folder.path(), &options);
     assert_eq!(code, Some(0), "{reported}");
     let paths = ["m.mod", "Joulepath.mod"].map(|name| out.join(name));
     let written = paths.each_ref().map(|file| fs::read_to_string(file).unwrap());
@@ -419,8 +424,9 @@ fn arguments_in_messages_are_escaped_for_rapid() {
     let text = program("", &statement).replace("PROC main", &format!("{function}PROC main"));
     let (folder, path) = module(text);
     let out = folder.path().join("out");
-    let (said, code) = said(folder.path(), &["optimize", &path, "--out", out.to_str().unwrap()]);
-    assert_eq!(code, Some(0), "{said}");
+    let (messages, code) =
+        messages_of(folder.path(), &["optimize", &path, "--out", out.to_str().unwrap()]);
+    assert_eq!(code, Some(0), "{messages}");
     let module = fs::read_to_string(out.join("Joulepath.mod")).unwrap();
     assert!(module.contains("\"fPlace(\"\"a\"\"\\\\nUp:=1)\""), "{module}");
 }
@@ -429,7 +435,7 @@ fn arguments_in_messages_are_escaped_for_rapid() {
 fn the_value_that_an_error_message_proposes_is_accepted() {
     let (folder, path) = module(program("", "WaitTime 0.5;"));
     for flag in ["--takt", "--time-factor"] {
-        let (message, _) = said(folder.path(), &["optimize", &path, flag, "0.1"]);
+        let (message, _) = messages_of(folder.path(), &["optimize", &path, flag, "0.1"]);
         let (_, advice) = message.split_once(&format!("give {flag} ")).unwrap();
         let least = advice.split(' ').next().unwrap();
         let args = ["optimize", &path, flag, least, "--format", "json"];
@@ -552,8 +558,8 @@ fn unusual_statements_have_their_true_reason() {
     ];
     let mut all = String::new();
     for (declarations, statements, args) in cases {
-        let (said, code) = said_of(declarations, statements, args);
-        writeln!(all, "{statements}\n-> {}\n{said}", code.unwrap()).unwrap();
+        let (messages, code) = messages_of_program(declarations, statements, args);
+        writeln!(all, "{statements}\n-> {}\n{messages}", code.unwrap()).unwrap();
     }
     snapshots().bind(|| insta::assert_snapshot!("odd", all));
 }
@@ -647,12 +653,13 @@ fn two_entry_routines_are_refused() {
     for name in ["a.mod", "b.mod"] {
         fs::write(folder.path().join(name), program("", "")).unwrap();
     }
-    let (message, code) = said(folder.path(), &["optimize", folder.path().to_str().unwrap()]);
+    let (message, code) =
+        messages_of(folder.path(), &["optimize", folder.path().to_str().unwrap()]);
     assert_eq!(code, Some(2));
     assert!(message.contains("[folder]/a.mod:6 and in [folder]/b.mod:6"), "{message}");
     fs::write(folder.path().join("a.mod"), "\r\n").unwrap();
     let empty = folder.path().join("a.mod");
-    let (message, _) = said(folder.path(), &["optimize", empty.to_str().unwrap()]);
+    let (message, _) = messages_of(folder.path(), &["optimize", empty.to_str().unwrap()]);
     assert!(message.contains("is empty"), "{message}");
 }
 
@@ -680,15 +687,16 @@ fn the_list_of_modules_names_the_new_one() {
     let path = folder.join("cell.pgf");
     let out = folder.join("out");
     let args = ["optimize", path.to_str().unwrap(), "--out", out.to_str().unwrap()];
-    assert_eq!(said(&folder, &args).1, Some(0));
+    assert_eq!(messages_of(&folder, &args).1, Some(0));
     let entry = "\r\n\t<Module>Joulepath.mod</Module>";
     let expected = list.replace("m.mod</Module>", &format!("m.mod</Module>{entry}"));
     assert_eq!(fs::read_to_string(out.join("cell.pgf")).unwrap(), expected);
     // The output is a complete program.
-    let (message, code) = said(&folder, &["simulate", out.join("cell.pgf").to_str().unwrap()]);
+    let (message, code) =
+        messages_of(&folder, &["simulate", out.join("cell.pgf").to_str().unwrap()]);
     assert_eq!((message.as_str(), code), ("", Some(0)));
     let args = ["optimize", path.to_str().unwrap(), "--in-place"];
-    assert_eq!(said(&folder, &args).1, Some(0));
+    assert_eq!(messages_of(&folder, &args).1, Some(0));
     assert_eq!(fs::read_to_string(&path).unwrap(), expected);
     let kept = outside.path().join("cell.joulepath-undo/files/cell.pgf");
     assert_eq!(fs::read_to_string(kept).unwrap(), list);
@@ -706,7 +714,7 @@ fn files_of_one_name_do_not_collide() {
     let [x, y] = [&paths[0], &paths[1]].map(|path| path.to_str().unwrap());
     let out = folder.path().join("out");
     let args = ["optimize", x, y, "--out", out.to_str().unwrap()];
-    assert_eq!(said(folder.path(), &args).1, Some(0));
+    assert_eq!(messages_of(folder.path(), &args).1, Some(0));
     assert_eq!(fs::read(out.join("y/m.mod")).unwrap(), fs::read(y).unwrap());
     assert!(out.join("x/Joulepath.mod").is_file());
 }

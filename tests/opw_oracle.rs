@@ -81,7 +81,8 @@ proptest! {
 
             prop_assume!(q[4].sin().abs() > 1e-3);
             let found = ik_all(model, &ours).unwrap();
-            prop_assert!(found.iter().any(|solution| same_angles(solution, &q, ANGLE)), "{}", model.name);
+            let is_found = found.iter().any(|solution| same_angles(solution, &q, ANGLE));
+            prop_assert!(is_found, "{}", model.name);
             for solution in other.inverse(&theirs) {
                 prop_assert!(
                     found.iter().any(|ours| same_angles(ours, &solution, ANGLE)),

@@ -42,7 +42,9 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..Default::default() })]
 
     #[test]
-    fn pose_and_flange_are_inverse_for_held_and_stationary_tools(q in prop::array::uniform6(-2.5..2.5)) {
+    fn pose_and_flange_are_inverse_for_held_and_stationary_tools(
+        q in prop::array::uniform6(-2.5..2.5)
+    ) {
         let flange = fk(&robots()[0], &q);
         for tcp in [Tcp::Held(stationary()), Tcp::Stationary(stationary())] {
             let [linear, angular] = difference(&tcp.flange(&tcp.pose(&flange)), &flange);

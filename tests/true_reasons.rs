@@ -375,8 +375,8 @@ fn movements_with_arguments_that_may_fail_are_kept_under_an_error_handler() {
         );
         let movements = ["MoveJ pHere,v1000,fine,tool0;", "rGo;"].map(str::to_owned);
         let reported = reasons(&segments(&declared, &movements));
-        let is_told = reported.iter().any(|reason| reason == "handler");
-        assert_eq!(is_told, expected, "{last} {handler}: {reported:?}");
+        let is_reported = reported.iter().any(|reason| reason == "handler");
+        assert_eq!(is_reported, expected, "{last} {handler}: {reported:?}");
     }
 }
 

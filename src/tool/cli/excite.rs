@@ -22,6 +22,7 @@ use crate::arm::effects;
 use crate::arm::kinematics::{Body, Obstacle, Plane};
 use crate::arm::robot::Model;
 use crate::learn::excite::{Design, Focus, Plateaus, friction_plateaus, wrist_plateaus};
+
 /// Range of base frequencies that can be designed and recorded \[Hz\].
 const MIN_FREQUENCY: f64 = 0.01;
 const MAX_FREQUENCY: f64 = 10.0;

@@ -142,8 +142,8 @@ fn note_syntax_errors(args: &LintArgs, files: &[SourceFile], report: &Report) {
             more => format!(" and {more} more"),
         };
         let text = format!(
-            "{}:{line}: {}{more}: statements with syntax errors are not linted; joulepath parse {} shows all \
-             syntax errors",
+            "{}:{line}: {}{more}: statements with syntax errors are not linted; joulepath parse {} \
+             shows all syntax errors",
             file.path, first.message, file.path
         );
         note(args.cell.quiet, &text);
