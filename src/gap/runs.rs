@@ -5,7 +5,7 @@ use crate::arm::effects::{Effect, find};
 use crate::arm::robot::Model;
 use crate::learn::log::{Delay, median_step};
 
-use super::findings::Estimated;
+use super::decision::Estimated;
 
 /// Deviations by which a duration has to differ, and by how much at least \[s\].
 const BEYOND: f64 = 5.0;

@@ -223,6 +223,13 @@ impl<'a> Motion<'a> {
         self.inertia[joint].get_or_init(|| self.turned(joint))
     }
 
+    /// Mean inertia moved by a joint \[kg m²\].
+    #[must_use]
+    pub fn mean_inertia(&self, joint: usize) -> f64 {
+        let inertias = self.inertias(joint);
+        inertias.iter().sum::<f64>() / inertias.len().max(1) as f64
+    }
+
     fn turned(&self, joint: usize) -> Vec<f64> {
         let mut data = Data::new();
         let n = self.model.dof;

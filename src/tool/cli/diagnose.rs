@@ -19,8 +19,8 @@ use super::output::{self, is_same_file};
 use crate::arm::effects::{self, ALL, Effect};
 use crate::arm::robot::{Model, Use, nearest, ready, to_toml};
 use crate::gap::{
-    Diagnosis, Logs, Phase, Record, Settings, Trust, Verdict, common_factor, diagnose_logs,
-    diagnose_power, diagnose_runs,
+    Diagnosis, Logs, Phase, Record, Settings, Trust, Tunables, Verdict, common_factor,
+    diagnose_logs, diagnose_power, diagnose_runs,
 };
 use crate::learn::identify::{Hints, Samples};
 use crate::learn::log::{Channel, ColumnMap};
@@ -216,10 +216,9 @@ fn run_diagnosis(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basi
     } else {
         (wanted.clone(), baseline.as_slice())
     };
-    let settings = Settings { trust, effects: of_torque };
+    let settings = Settings { trust, effects: of_torque, tunables: Tunables::DEFAULT };
     let mut found =
         diagnose_with_progress(&model, [&train, &held, compared], &settings, &progress(args.quiet));
-    basis.notes.extend(baseline_notes(&found, compared));
     if let Some(of) = &of_power {
         found.add_power(of);
     }
@@ -301,20 +300,6 @@ fn read_data(
 
 fn records<'a>(model: &'a Model, logs: &[PreparedLog]) -> Vec<Record<'a>> {
     logs.iter().flat_map(|log| Record::all(model, &log.samples)).collect()
-}
-
-/// Effects that the baseline already shows, or why it is not compared.
-fn baseline_notes(found: &Diagnosis, compared: &[PreparedLog]) -> Vec<String> {
-    let known = found.before.iter().flatten();
-    let mut notes: Vec<String> =
-        known.map(|of| format!("{}: in the baseline already", report::called(of))).collect();
-    if !compared.is_empty() && found.before.is_none() {
-        notes.push(
-            "the baseline is not compared with the torques: log it as often repeated as the others"
-                .into(),
-        );
-    }
-    notes
 }
 
 fn write(

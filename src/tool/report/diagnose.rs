@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use crate::gap::{Diagnosis, Interval, Place, Said, Verdict};
+use crate::gap::{Budget, Diagnosis, Finding, Interval, Place, Verdict};
 
 /// The basis of a result: robot, logs, notes.
 #[derive(Clone, Debug, Default)]
@@ -25,11 +25,11 @@ pub struct Basis {
 /// The JSON of the stable interface.
 #[must_use]
 pub fn json(found: &Diagnosis, basis: &Basis) -> Value {
-    let all = |of: &[Said]| -> Vec<Value> { of.iter().map(effect).collect() };
-    let generic = found.anything.iter().map(|of| {
+    let all = |of: &[Finding]| -> Vec<Value> { of.iter().map(|of| effect(of, found)).collect() };
+    let generic = found.remainder.iter().map(|of| {
         json!({
             "id": of.id,
-            "joint": of.joint.map(|joint| joint + 1),
+            "joint": of.joint + 1,
             "share_percent": 100.0 * of.share,
         })
     });
@@ -41,8 +41,9 @@ pub fn json(found: &Diagnosis, basis: &Basis) -> Value {
         "where": found.places.iter().map(place).collect::<Vec<_>>(),
         "gap": gap(found, basis),
         "next_experiment": next(found, basis),
-        "model_error_percent": 100.0 * found.error,
-        "null_nats": found.chance,
+        "budget": found.budget.iter().map(budget).collect::<Vec<_>>(),
+        "everyday_error_percent": found.everyday.iter().map(|x| 100.0 * x).collect::<Vec<_>>(),
+        "trail": found.trail,
         "reasons": found.reasons,
         "notes": basis.notes,
         "model": basis.model,
@@ -113,7 +114,27 @@ fn interval(of: &Interval) -> Value {
     json!({"value": 100.0 * of.value, "low": 100.0 * of.low, "high": 100.0 * of.high})
 }
 
-fn effect(of: &Said) -> Value {
+/// What the gap is made of.
+fn budget(of: &Budget) -> Value {
+    let effects = of.effects.iter().map(|(id, rms)| ((*id).to_owned(), json!(rms)));
+    json!({
+        "joint": of.joint.map(|joint| joint + 1),
+        "model": of.model,
+        "parameters": of.parameters,
+        "effects": effects.collect::<Map<_, _>>(),
+        "unexplained": of.unexplained,
+        "noise": of.noise,
+    })
+}
+
+/// Share of the squared gap of all joints that an effect takes off.
+fn share(of: &Finding, found: &Diagnosis) -> f64 {
+    let Some(all) = found.budget.iter().find(|of| of.joint.is_none()) else { return 0.0 };
+    let own = all.effects.iter().find(|(id, _)| *id == of.effect.id);
+    own.map_or(0.0, |(_, rms)| (rms / all.model.max(f64::MIN_POSITIVE)).powi(2))
+}
+
+fn effect(of: &Finding, found: &Diagnosis) -> Value {
     let parameters = of
         .parameters
         .iter()
@@ -124,7 +145,7 @@ fn effect(of: &Said) -> Value {
         "class": of.class,
         "probability": of.probability,
         "parameters": parameters.collect::<Map<_, _>>(),
-        "share_percent": 100.0 * of.share,
+        "share_percent": 100.0 * share(of, found),
         "nats": of.nats,
         "size_percent": 100.0 * of.size,
     })
@@ -176,7 +197,7 @@ pub(super) fn sentence(verdict: Verdict) -> &'static str {
 
 /// The name of an effect and its joints.
 #[must_use]
-pub fn called(of: &Said) -> String {
+pub fn called(of: &Finding) -> String {
     let joints: Vec<String> = of.joints.iter().map(|joint| (joint + 1).to_string()).collect();
     let place = match joints.len() {
         0 => "the robot".to_owned(),
@@ -186,15 +207,21 @@ pub fn called(of: &Said) -> String {
 }
 
 /// The same with its probability.
-fn with_probability(of: &Said) -> String {
+fn with_probability(of: &Finding) -> String {
     format!("{}, probability {:.2}, {:.0} nats", called(of), of.probability, of.nats)
 }
 
 /// What the gap depends on beside the effects.
 pub(super) fn unknown(found: &Diagnosis) -> impl Iterator<Item = String> {
-    found.anything.iter().map(|of| {
-        let joint = of.joint.map_or_else(String::new, |joint| format!(" of joint {}", joint + 1));
-        format!("a function of the {}{joint}", of.id.replace('_', " "))
+    found.remainder.iter().map(|of| {
+        let what = match of.id {
+            "other" => "no smooth function".to_owned(),
+            id => format!(
+                "a function of the {}",
+                id.replace("_and_sense", " and the sense of motion").replace('_', " ")
+            ),
+        };
+        format!("{:.1} % of the torque of joint {}, {what}", 100.0 * of.share, of.joint + 1)
     })
 }
 

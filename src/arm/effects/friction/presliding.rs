@@ -1,12 +1,18 @@
 //! Friction that builds up over a distance after each reversal.
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, bounded, every, shape};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, Variable, bounded, every, shape,
+};
 use crate::arm::effects::motion::Motion;
 
 pub(in crate::arm::effects) const PRESLIDING: Effect = Effect {
     id: "presliding",
     channel: Channel::Torque,
     scope: Scope::Joint,
+    subject: Subject::Drive,
+    nature: Nature::Law,
+    acts: Acts::AfterReversals,
+    variable: Some(Variable::Reversal),
     title: "Pre-sliding",
     law: "dz/dq = (1 − s z)/distance, τ = coulomb·(z − s)",
     source: "P. Dahl, A solid friction model, 1968",

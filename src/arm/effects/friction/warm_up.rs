@@ -3,13 +3,18 @@
 use crate::arm::robot::LawState;
 
 use crate::arm::effects::effect::{
-    Channel, Effect, Form, Scope, Values, bounded, every, free, linear, shape,
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, Values, Variable, bounded, every, free,
+    linear, shape,
 };
 
 pub(in crate::arm::effects) const WARM_UP: Effect = Effect {
     id: "warm_up",
     channel: Channel::Torque,
     scope: Scope::Joint,
+    subject: Subject::Drive,
+    nature: Nature::Law,
+    acts: Acts::OverTime,
+    variable: Some(Variable::TimeSense),
     title: "Warming up",
     law: "τ = (coulomb·s + viscous·q̇)·exp(−t/time_constant)",
     source: "A. Bittencourt, E. Wernholt, S. Sander-Tavallaey, T. Brogårdh, An extended friction model to capture load and temperature effects in robot joints, IROS 2010",

@@ -1,7 +1,8 @@
 //! Torques logged after a filter.
 
 use crate::arm::effects::effect::{
-    Channel, Coordinate, Effect, Form, Role, Scope, bounded, every, shape, shaped,
+    Acts, Channel, Coordinate, Effect, Form, Nature, Role, Scope, Subject, Variable, bounded,
+    every, shape, shaped,
 };
 use crate::arm::effects::motion::Motion;
 use crate::arm::effects::response::Response;
@@ -10,6 +11,10 @@ pub(in crate::arm::effects) const FILTER_LAG: Effect = Effect {
     id: "filter_lag",
     channel: Channel::Torque,
     scope: Scope::Robot,
+    subject: Subject::Measurement,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: Some(Variable::Reversal),
     title: "Lag of a filter",
     law: "lag·dτ/dt + τ_logged = τ",
     source: "docs/identification.md",

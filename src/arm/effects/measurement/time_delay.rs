@@ -1,7 +1,8 @@
 //! Torques that are logged with a delay relative to positions.
 
 use crate::arm::effects::effect::{
-    Channel, Coordinate, Effect, Form, Role, Scope, bounded, every, shape, shaped,
+    Acts, Channel, Coordinate, Effect, Form, Nature, Role, Scope, Subject, Variable, bounded,
+    every, shape, shaped,
 };
 use crate::arm::effects::motion::Motion;
 use crate::arm::effects::response::Response;
@@ -10,6 +11,10 @@ pub(in crate::arm::effects) const TIME_DELAY: Effect = Effect {
     id: "time_delay",
     channel: Channel::Torque,
     scope: Scope::Robot,
+    subject: Subject::Measurement,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: Some(Variable::Reversal),
     title: "Delay",
     law: "τ = τ(t − delay), logged",
     source: "docs/identification.md",

@@ -9,7 +9,8 @@ use crate::arm::robot::{GRAVITY, Link, Model};
 
 use super::bodies::added as with_body;
 use crate::arm::effects::effect::{
-    Channel, Coordinate, Effect, Form, Published, Role, Scope, bounded, free, linear, shaped,
+    Acts, Channel, Coordinate, Effect, Form, Nature, Published, Role, Scope, Subject, bounded,
+    free, linear, shaped,
 };
 use crate::arm::effects::motion::Motion;
 use crate::arm::effects::scale::Scale;
@@ -19,6 +20,10 @@ pub(in crate::arm::effects) const CONTACT: Effect = Effect {
     id: "contact",
     channel: Channel::Torque,
     scope: Scope::Robot,
+    subject: Subject::Body,
+    nature: Nature::Law,
+    acts: Acts::InWindow,
+    variable: None,
     title: "A force from outside",
     law: "τ = −Jᵀ·force·min(1, sin πx/sin(π·rise)) on the flange, x from 0 to 1 from t_start_s to \
           t_end_s, repeated every period_s",

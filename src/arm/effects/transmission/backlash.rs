@@ -2,7 +2,8 @@
 
 use super::elasticity::displaced;
 use crate::arm::effects::effect::{
-    Channel, Coordinate, Effect, Form, Role, Scope, bounded, every, shape, shaped,
+    Acts, Channel, Coordinate, Effect, Form, Nature, Role, Scope, Subject, Variable, bounded,
+    every, shape, shaped,
 };
 use crate::arm::effects::motion::Motion;
 
@@ -10,6 +11,10 @@ pub(in crate::arm::effects) const BACKLASH: Effect = Effect {
     id: "backlash",
     channel: Channel::Torque,
     scope: Scope::Joint,
+    subject: Subject::Drive,
+    nature: Nature::Law,
+    acts: Acts::AfterReversals,
+    variable: Some(Variable::Reversal),
     title: "Backlash",
     law: "width, stiffness 0: τ = −τ_L until the motor has turned by gap after each change of the sign of τ_L; \
           width > 0: q_link = q − gap/2·tanh(τ_L/width); stiffness k > 0: q_link = q − δ, \
@@ -21,7 +26,7 @@ pub(in crate::arm::effects) const BACKLASH: Effect = Effect {
         bounded("stiffness", "Nm/rad", "stiffness of the gear at a side", [0.0, f64::INFINITY]),
     ],
     coordinates: &[
-        shape(|_| vec![0.0005, 0.001, 0.003, 0.008, 0.02]),
+        shape(|_| vec![0.0007, 0.003, 0.012]),
         Coordinate {
             role: Role::Choice(|of| WIDTHS.map(|width| width * of.torque[0]).to_vec()),
             usual: shaped,
@@ -42,10 +47,10 @@ pub(in crate::arm::effects) const BACKLASH: Effect = Effect {
 };
 
 /// Tried widths, as shares of the torque.
-const WIDTHS: [f64; 4] = [0.0, 0.02, 0.06, 0.2];
+const WIDTHS: [f64; 3] = [0.0, 0.03, 0.12];
 
 /// Tried deflections of gears under the torque \[rad\]; 0 for stiff gears.
-const DEFLECTIONS: [f64; 4] = [0.0, 2.5e-4, 8e-4, 2.5e-3];
+const DEFLECTIONS: [f64; 3] = [0.0, 5e-4, 2e-3];
 
 fn added(motion: &Motion<'_>, joint: usize, values: &[f64]) -> Vec<(usize, Vec<f64>)> {
     let [gap, width, stiffness] = [values[0], values[1], values[2]];

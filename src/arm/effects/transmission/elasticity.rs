@@ -3,7 +3,7 @@
 use crate::arm::dynamics::Load;
 
 use crate::arm::effects::effect::{
-    Channel, Effect, Form, Published, Scope, bounded, every, linear,
+    Acts, Channel, Effect, Form, Nature, Published, Scope, Subject, bounded, every, linear,
 };
 use crate::arm::effects::motion::Motion;
 
@@ -11,6 +11,10 @@ pub(in crate::arm::effects) const ELASTICITY: Effect = Effect {
     id: "elasticity",
     channel: Channel::Torque,
     scope: Scope::Joint,
+    subject: Subject::Drive,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: None,
     title: "Elasticity of a joint",
     law: "q_link = q − τ_L/stiffness",
     source: "M. Spong, Modeling and control of elastic joint robots, ASME JDSMC 109, 1987",

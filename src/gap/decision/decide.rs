@@ -1,0 +1,304 @@
+//! From the most probable set of effects to what is asserted: a list of gates.
+
+use super::calibration::calibrated;
+use super::finding::{Estimated, Finding, Remainder, Verdict};
+use super::search::{Found, Search, Tried};
+use super::trail::{Entry, Gate};
+use crate::arm::effects::{Effect, Scope};
+use crate::gap::data::RecordKind;
+use crate::gap::design::{Set, Trust};
+use crate::gap::model::Fitted;
+
+/// Ids of effects that a class has at most: more are unknown.
+const LARGEST_CLASS: usize = 5;
+/// Deviations by which a parameter may be beyond what is possible.
+const BEYOND: f64 = 2.0;
+
+/// What the logs that were fitted say.
+pub struct Decision {
+    /// What is found.
+    pub verdict: Verdict,
+    /// What is asserted, by decreasing evidence.
+    pub effects: Vec<Finding>,
+    /// What was considered.
+    pub candidates: Vec<Finding>,
+    /// What no known law explains.
+    pub remainder: Vec<Remainder>,
+    /// The answers of all gates.
+    pub trail: Vec<Entry>,
+    /// The fit with what is asserted.
+    pub fit: Found,
+    /// The asserted effects with their parameters.
+    pub fitted: Vec<Fitted>,
+    /// Everyday error by joint, of its torque.
+    pub everyday: Vec<f64>,
+}
+
+/// An effect that was found, with what the gates ask about it.
+struct Weighed {
+    effect: &'static Effect,
+    /// By piece: its parameters, its share of its joint's torque, its evidence \[nats\].
+    pieces: Vec<(Fitted, f64, f64)>,
+    /// The largest share of a joint's torque.
+    size: f64,
+    /// Evidence \[nats\].
+    nats: f64,
+    /// Joints that it reaches, where it does not reach all.
+    reached: Vec<usize>,
+    class: Vec<&'static str>,
+    probability: f64,
+}
+
+/// Decides on what a search found.
+#[must_use]
+pub fn decide(search: &Search<'_>, none: &Found, found: Found, tried: &[Tried]) -> Decision {
+    let tunables = &search.design.tunables;
+    let has_baseline = search.records.iter().any(|record| record.kind == RecordKind::Before);
+    let n = search.design.joints.len();
+    let mut trail = Vec::new();
+    let noisy = noisy_joints(search, &mut trail);
+    let weighed: Vec<Weighed> =
+        (0..found.effects.len()).map(|k| weigh(search, none, &found, k, tried)).collect();
+    let least = if has_baseline { tunables.least_change } else { tunables.least_share };
+    let everyday: Vec<f64> = (0..n).map(|j| found.fit.everyday(search.design, j)).collect();
+    let left = |fit: &Found, joint: usize| match has_baseline {
+        true => fit.fit.changed(search.design, joint),
+        false => fit.fit.everyday(search.design, joint),
+    };
+    let (mut kept, mut effects, mut candidates) = (Vec::new(), Vec::new(), Vec::new());
+    for (of, candidate) in weighed.iter().zip(&found.effects) {
+        let mut ask = |gate: Gate, at: String, value: f64, limit: f64| {
+            let entry = gate.of(at, value, limit);
+            let passed = entry.passed;
+            trail.push(entry);
+            passed
+        };
+        let id = of.effect.id;
+        let mut passed = ask(Gate::Evidence, id.to_owned(), of.nats, tunables.least_nats);
+        let limit = LARGEST_CLASS as f64;
+        passed &= ask(Gate::Class, id.to_owned(), of.class.len() as f64, limit);
+        let mut joints = Vec::new();
+        for (k, (fitted, share, nats)) in of.pieces.iter().enumerate() {
+            let at = match fitted.joint {
+                Some(joint) => format!("{id} of joint {}", joint + 1),
+                None => id.to_owned(),
+            };
+            let least = match fitted.joint {
+                Some(joint) => least.max(tunables.over_everyday * left(&found, joint)),
+                None => least,
+            };
+            let is_quiet = fitted.joint.is_none_or(|joint| !noisy.contains(&joint));
+            let mut there = is_quiet
+                & ask(Gate::Size, at.clone(), *share, least)
+                & ask(Gate::Deviations, at.clone(), fitted.significance, tunables.deviations)
+                & ask(Gate::Bounds, at.clone(), fitted.beyond_bounds(), BEYOND);
+            if of.pieces.len() > 1 {
+                there &= ask(Gate::JointEvidence, at, *nats, tunables.joint_nats);
+            }
+            if there {
+                joints.push(k);
+            }
+        }
+        let chosen: Vec<&Fitted> = if passed && !joints.is_empty() {
+            joints.iter().map(|k| &of.pieces[*k].0).collect()
+        } else {
+            of.pieces.iter().map(|(fitted, ..)| fitted).collect()
+        };
+        let finding = of.finding(&chosen);
+        if passed && !joints.is_empty() {
+            let mut candidate = candidate.clone();
+            candidate.pieces = joints.iter().map(|k| candidate.pieces[*k].clone()).collect();
+            kept.push(candidate);
+            effects.push(finding);
+        } else {
+            candidates.push(finding);
+        }
+    }
+    let fit = match kept.len() {
+        0 => None,
+        _ => search.with(none, kept, none.fit.sizes.clone()),
+    };
+    let fit =
+        fit.unwrap_or_else(|| Found { effects: Vec::new(), score: 0.0, fit: none.fit.clone() });
+    let mut remainder = Vec::new();
+    for joint in 0..n {
+        let share = left(&fit, joint);
+        let at = format!("joint {}", joint + 1);
+        let entry = Gate::Unexplained.of(at, share, tunables.usual_error);
+        if !entry.passed || noisy.contains(&joint) {
+            let variable = fit.fit.largest_variable(search.design, joint);
+            let id = variable.map_or("other", |of| of.name());
+            remainder.push(Remainder { id, joint, share });
+        }
+        trail.push(entry);
+    }
+    let fitted = fitted(&fit);
+    let verdict = match (effects.is_empty(), remainder.is_empty()) {
+        (true, true) if has_baseline => Verdict::NoGap,
+        (true, true) => Verdict::ParametersOnly,
+        (true, false) => Verdict::Unknown,
+        (false, true) => Verdict::Effect,
+        (false, false) => Verdict::Partial,
+    };
+    Decision { verdict, effects, candidates, remainder, trail, fit, fitted, everyday }
+}
+
+impl Weighed {
+    fn finding(&self, fitted: &[&Fitted]) -> Finding {
+        let joints: Vec<usize> = fitted.iter().filter_map(|of| of.joint).collect();
+        Finding {
+            effect: self.effect,
+            joints: if joints.is_empty() { self.reached.clone() } else { joints },
+            class: self.class.clone(),
+            probability: self.probability,
+            parameters: parameters(fitted),
+            nats: self.nats,
+            size: self.size,
+        }
+    }
+}
+
+/// Parameters of an effect at its joints; with several joints their names end with the joint.
+fn parameters(fitted: &[&Fitted]) -> Vec<Estimated> {
+    let mut all = Vec::new();
+    for of in fitted {
+        let values = of.parameters.iter().zip(&of.deviations);
+        for (parameter, (value, sd)) in of.effect.parameters.iter().zip(values) {
+            let name = match of.joint {
+                Some(joint) if fitted.len() > 1 => format!("{}_j{}", parameter.name, joint + 1),
+                _ => parameter.name.to_owned(),
+            };
+            all.push(Estimated { name, value: *value, sd: *sd, unit: parameter.unit });
+        }
+    }
+    all
+}
+
+/// Parameters of all pieces of a fit.
+fn fitted(found: &Found) -> Vec<Fitted> {
+    let fit = &found.fit;
+    let mut from = fit.mean.len() - fit.hypothesis.columns();
+    let mut all = Vec::new();
+    for member in &fit.hypothesis.members {
+        let own = member.piece.own;
+        let factors = fit.mean.rows(from, own).into_owned();
+        let covariance = fit.covariance.view((from, from), (own, own)).into_owned();
+        all.push(Fitted::new(&member.piece, &factors, &covariance));
+        from += member.piece.prior.len();
+    }
+    all
+}
+
+/// What the gates ask about an effect of a set.
+fn weigh(
+    search: &Search<'_>,
+    none: &Found,
+    found: &Found,
+    number: usize,
+    tried: &[Tried],
+) -> Weighed {
+    let effect = found.effects[number].effect;
+    let first: usize = found.effects[..number].iter().map(|of| of.pieces.len()).sum();
+    let count = found.effects[number].pieces.len();
+    let score = |less: Option<Found>| less.map_or(0.0, |less| less.score);
+    let without =
+        if found.effects.len() > 1 { score(search.without(none, found, number)) } else { 0.0 };
+    let all = fitted(found);
+    let n = search.design.joints.len();
+    let share = |members: std::ops::Range<usize>, joint: usize| {
+        found.fit.share(search.design, members, joint)
+    };
+    let largest = |members: std::ops::Range<usize>| {
+        (0..n).map(|joint| share(members.clone(), joint)).fold(0.0, f64::max)
+    };
+    let pieces = (0..count).map(|k| {
+        let fitted = all[first + k].clone();
+        let members = first + k..first + k + 1;
+        let size = match fitted.joint {
+            Some(joint) => share(members, joint),
+            None => largest(members),
+        };
+        let nats = match count {
+            1 => found.score - without,
+            _ => found.score - score(search.without_joint(none, found, number, k)),
+        };
+        (fitted, size, nats)
+    });
+    let piece = &found.effects[number].pieces[0];
+    let is_part = effect.scope == Scope::Robot && piece.rows.len() < n;
+    let class = class(search, found, number, tried);
+    Weighed {
+        effect,
+        size: largest(first..first + count),
+        nats: found.score - without,
+        reached: if is_part { piece.rows.iter().map(|(at, _)| *at).collect() } else { Vec::new() },
+        probability: calibrated(inclusion(effect.id, tried)),
+        class,
+        pieces: pieces.collect(),
+    }
+}
+
+/// Effects that explain the logs as well in the place of one of a set.
+fn class(search: &Search<'_>, found: &Found, number: usize, tried: &[Tried]) -> Vec<&'static str> {
+    let ids: Vec<&str> = found.effects.iter().map(|of| of.effect.id).collect();
+    let mut class = vec![found.effects[number].effect.id];
+    for of in tried {
+        let is_rest = |id: &&str| *id == ids[number] || of.ids.contains(id);
+        let others: Vec<&'static str> =
+            of.ids.iter().copied().filter(|id| !ids.contains(id)).collect();
+        let near = of.score > found.score - search.design.tunables.class_nats;
+        if let [other] = others[..]
+            && of.ids.len() == ids.len()
+            && ids.iter().all(|id| is_rest(id))
+            && near
+            && !class.contains(&other)
+        {
+            class.push(other);
+        }
+    }
+    class
+}
+
+/// Posterior probability that an effect is in the set, over all sets that were fitted.
+fn inclusion(id: &str, tried: &[Tried]) -> f64 {
+    let most = tried.iter().map(|of| of.score).fold(f64::NEG_INFINITY, f64::max);
+    let (mut with, mut all) = (0.0, 0.0);
+    for of in tried {
+        let weight = (of.score - most).exp();
+        all += weight;
+        with += if of.ids.contains(&id) { weight } else { 0.0 };
+    }
+    with / f64::max(all, f64::MIN_POSITIVE)
+}
+
+/// Joints whose noise has grown since the baseline.
+fn noisy_joints(search: &Search<'_>, trail: &mut Vec<Entry>) -> Vec<usize> {
+    let tunables = &search.design.tunables;
+    let mut noisy = Vec::new();
+    for of in &search.design.joints {
+        let share = |set: Set| {
+            let cells = of.cells.iter().filter(|cell| cell.set == set);
+            let (noise, power) = cells.fold((0.0, 0.0), |(noise, power), cell| {
+                let count = cell.rows.len() as f64;
+                (noise + cell.noise * count, power + cell.power * count)
+            });
+            f64::sqrt(noise / f64::max(power, f64::MIN_POSITIVE))
+        };
+        let [now, before] = [Set::Now, Set::Baseline].map(share);
+        if before > 0.0 && now > tunables.least_share {
+            let at = format!("joint {}", of.joint + 1);
+            let entry = Gate::Noise.of(at, now / before, tunables.noise_ratio);
+            if !entry.passed {
+                noisy.push(of.joint);
+            }
+            trail.push(entry);
+        }
+    }
+    noisy
+}
+
+/// Whether a parameter may be named at all under a trust.
+#[must_use]
+pub fn may_name_parameters(trust: Trust) -> bool {
+    trust != Trust::Unknown
+}

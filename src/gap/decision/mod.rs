@@ -1,0 +1,15 @@
+//! Which effects are asserted, and why.
+
+mod calibration;
+mod decide;
+mod finding;
+mod search;
+mod shape;
+mod trail;
+mod window;
+
+pub(super) use calibration::asserted;
+pub use decide::{Decision, decide, may_name_parameters};
+pub use finding::{Estimated, Finding, Place, Remainder, Verdict};
+pub use search::{Found, Search};
+pub use trail::{Entry, Gate};

@@ -1,0 +1,325 @@
+//! The search for the most probable set of effects.
+
+use crate::arm::effects::{Acts, Effect, Nature, Scope, Subject};
+use rayon::prelude::*;
+
+use super::shape::{lowest, moves, refined};
+use super::window::windows;
+use crate::gap::data::Record;
+use crate::gap::design::{Design, Group, PieceRows, Whole, link_pieces, piece_rows};
+use crate::gap::posterior::{Fit, Gains, Hypothesis, Member, Sizes, fitted, usual};
+
+/// Families that are fitted in full in each round.
+const FULL: usize = 6;
+/// Effects that are found together at most.
+const MOST: usize = 3;
+/// Steps of the sizes: of a first fit, and of a fit with an effect.
+const FIRST: usize = 10;
+const ROUNDS: usize = 4;
+/// Sets whose shapes are refined in each round.
+const REFINED: usize = 4;
+
+/// Pieces of one effect.
+#[derive(Clone)]
+pub struct Candidate {
+    /// The effect.
+    pub effect: &'static Effect,
+    /// Its pieces.
+    pub pieces: Vec<PieceRows>,
+    /// Prior cost \[nats\].
+    pub cost: f64,
+}
+
+/// A set of effects.
+pub struct Found {
+    /// The effects.
+    pub effects: Vec<Candidate>,
+    /// The fit with them.
+    pub fit: Fit,
+    /// Logarithm of the odds against no effect.
+    pub score: f64,
+}
+
+impl Found {
+    fn tried(&self) -> Tried {
+        Tried { ids: self.effects.iter().map(|of| of.effect.id).collect(), score: self.score }
+    }
+}
+
+/// A set that was fitted: ids of its effects, and the logarithm of the odds against no effect.
+pub struct Tried {
+    /// Ids.
+    pub ids: Vec<&'static str>,
+    /// Odds \[nats\].
+    pub score: f64,
+}
+
+/// A search.
+pub struct Search<'a> {
+    /// Records.
+    pub records: &'a [Record<'a>],
+    /// Design.
+    pub design: &'a Design,
+    /// Pieces that may be found.
+    pieces: Vec<PieceRows>,
+    /// Effects that act in windows.
+    whole: Vec<Whole>,
+}
+
+impl<'a> Search<'a> {
+    /// A search for effects.
+    #[must_use]
+    pub fn new(
+        records: &'a [Record<'a>],
+        design: &'a Design,
+        effects: &[&'static Effect],
+    ) -> Search<'a> {
+        let mut pieces = piece_rows(design, records, effects);
+        let parameters = effects
+            .iter()
+            .find(|of| of.nature == Nature::Parameters && of.subject == Subject::Body);
+        pieces.extend(parameters.into_iter().flat_map(|of| link_pieces(design, of)));
+        let n = design.joints.len();
+        let whole = effects.iter().filter(|of| of.acts == Acts::InWindow).flat_map(|of| {
+            let count = if of.scope == Scope::Robot { 1 } else { n };
+            (0..count).filter_map(|joint| Whole::new(records, of, joint))
+        });
+        Search { records, design, pieces, whole: whole.collect() }
+    }
+}
+
+impl Search<'_> {
+    /// The fit without effects.
+    #[must_use]
+    pub fn none(&self) -> Option<Found> {
+        let fit = fitted(self.design, Hypothesis::default(), usual(self.design), FIRST, false)?;
+        Some(Found { effects: Vec::new(), score: 0.0, fit })
+    }
+
+    /// For each effect that is not in the set, its best joints and shapes beside it.
+    #[must_use]
+    fn candidates(
+        &self,
+        pieces: &[PieceRows],
+        gains: &[[f64; 2]],
+        set: &[Candidate],
+    ) -> Vec<(f64, Candidate)> {
+        let mut all: Vec<(f64, Candidate)> = Vec::new();
+        let mut ids: Vec<&'static str> = Vec::new();
+        for piece in pieces {
+            if !ids.contains(&piece.effect.id) {
+                ids.push(piece.effect.id);
+            }
+        }
+        for id in ids.into_iter().filter(|id| set.iter().all(|of| of.effect.id != *id)) {
+            // By joint: the gain less the cost, the cost, the piece.
+            let mut best: Vec<(Option<usize>, [f64; 2], &PieceRows)> = Vec::new();
+            let brought = |piece: &PieceRows| {
+                let of_joint = |other: &PieceRows| {
+                    other.joint == piece.joint && other.effect.brings.contains(&id)
+                };
+                set.iter().flat_map(|of| &of.pieces).any(of_joint)
+            };
+            for (piece, [gain, of_brought]) in
+                pieces.iter().zip(gains).filter(|(p, _)| p.effect.id == id)
+            {
+                if brought(piece) {
+                    continue;
+                }
+                let cost = self.design.tunables.joint_cost
+                    + (piece.choices.max(1) as f64).ln()
+                    + of_brought;
+                let net = gain - cost;
+                match best.iter_mut().find(|(joint, ..)| *joint == piece.joint) {
+                    Some(known) if net > known.1[0] => (known.1, known.2) = ([net, cost], piece),
+                    Some(_) => {}
+                    None => best.push((piece.joint, [net, cost], piece)),
+                }
+            }
+            best.sort_by(|a, b| b.1[0].total_cmp(&a.1[0]));
+            let wanted = |(k, of): &(usize, &(Option<usize>, [f64; 2], &PieceRows))| {
+                *k == 0 || of.1[0] > 0.0
+            };
+            let chosen: Vec<_> = best.iter().enumerate().filter(wanted).map(|(_, of)| of).collect();
+            let Some(first) = chosen.first() else { continue };
+            let effect_cost = self.design.tunables.effect_cost;
+            let score = chosen.iter().map(|of| of.1[0]).sum::<f64>() - effect_cost;
+            let cost = effect_cost + chosen.iter().map(|of| of.1[1]).sum::<f64>();
+            let pieces = chosen.iter().map(|of| of.2.clone()).collect();
+            all.push((score, Candidate { effect: first.2.effect, pieces, cost }));
+        }
+        all.sort_by(|a, b| b.0.total_cmp(&a.0));
+        all
+    }
+
+    /// The fit with a set of effects, from sizes.
+    #[must_use]
+    pub fn with(&self, base: &Found, effects: Vec<Candidate>, sizes: Sizes) -> Option<Found> {
+        let pieces = effects.iter().flat_map(|of| of.pieces.iter().cloned());
+        let members = pieces.map(|piece| Member::new(self.design, self.records, piece)).collect();
+        let fit = fitted(self.design, Hypothesis { members }, sizes, ROUNDS, true)?;
+        let cost: f64 = effects.iter().map(|of| of.cost).sum();
+        let score = fit.log_evidence - base.fit.log_evidence - cost;
+        Some(Found { effects, fit, score })
+    }
+
+    /// The best set: effects are added while the evidence grows, then joints and effects that became
+    /// needless are taken out; with all sets that were fitted.
+    #[must_use]
+    pub fn best(&self, none: Found) -> (Found, Found, Vec<Tried>) {
+        let least = self.design.tunables.least_nats;
+        let mut tried = vec![Tried { ids: Vec::new(), score: 0.0 }];
+        let mut best: Option<Found> = None;
+        for _ in 0..MOST {
+            let next = self.next(&none, best.as_ref().unwrap_or(&none));
+            tried.extend(next.iter().map(Found::tried));
+            let before = best.as_ref().map_or(0.0, |best| best.score);
+            match next.into_iter().next() {
+                Some(first) if first.score > before + least => best = Some(first),
+                _ => break,
+            }
+        }
+        let none_again = Found { effects: Vec::new(), score: 0.0, fit: none.fit.clone() };
+        let best = match best {
+            Some(best) => self.pruned(&none, best),
+            None => none_again,
+        };
+        tried.push(best.tried());
+        (none, best, tried)
+    }
+
+    /// The set without effects and joints that hardly matter.
+    fn pruned(&self, none: &Found, mut found: Found) -> Found {
+        let tunables = &self.design.tunables;
+        let mut e = 0;
+        while e < found.effects.len() {
+            let less = (found.effects.len() > 1).then(|| self.without(none, &found, e)).flatten();
+            if let Some(less) = less.filter(|less| less.score > found.score - tunables.least_nats) {
+                found = less;
+                continue;
+            }
+            let mut k = 0;
+            while k < found.effects[e].pieces.len() && found.effects[e].pieces.len() > 1 {
+                match self.without_joint(none, &found, e, k) {
+                    Some(less) if less.score > found.score - tunables.joint_nats => found = less,
+                    _ => k += 1,
+                }
+            }
+            e += 1;
+        }
+        found
+    }
+
+    /// The set without one of its effects.
+    #[must_use]
+    pub fn without(&self, none: &Found, found: &Found, effect: usize) -> Option<Found> {
+        let mut effects = found.effects.clone();
+        effects.remove(effect);
+        self.with(none, effects, none.fit.sizes.clone())
+    }
+
+    /// The set without one piece of one of its effects.
+    #[must_use]
+    pub fn without_joint(
+        &self,
+        none: &Found,
+        found: &Found,
+        effect: usize,
+        piece: usize,
+    ) -> Option<Found> {
+        let mut effects = found.effects.clone();
+        let gone = effects[effect].pieces.remove(piece);
+        effects[effect].cost -= self.design.tunables.joint_cost + (gone.choices.max(1) as f64).ln();
+        self.with(none, effects, none.fit.sizes.clone())
+    }
+
+    /// The best sets with one effect more than `found`, best first.
+    #[must_use]
+    fn next(&self, none: &Found, found: &Found) -> Vec<Found> {
+        let usual_sizes = usual(self.design);
+        let plain = fitted(self.design, found.fit.hypothesis.clone(), usual_sizes, 0, true);
+        let mut lists: Vec<(Vec<PieceRows>, Vec<[f64; 2]>)> = Vec::new();
+        for fit in std::iter::once(&found.fit).chain(plain.iter()) {
+            let all = Gains::new(self.design, fit);
+            let more: Vec<PieceRows> = self
+                .whole
+                .par_iter()
+                .flat_map_iter(|whole| windows(self.records, self.design, &all, whole))
+                .collect();
+            let mut gains = all.of_all(&self.pieces, f64::INFINITY);
+            gains.extend(all.of_all(&more, f64::INFINITY));
+            lists.push((self.pieces.iter().cloned().chain(more).collect(), gains));
+        }
+        let mut wanted: Vec<Candidate> = Vec::new();
+        for (pieces, gains) in &lists {
+            for (_, candidate) in
+                self.candidates(pieces, gains, &found.effects).into_iter().take(FULL)
+            {
+                let is_known = |of: &Candidate| {
+                    of.effect.id == candidate.effect.id
+                        && of.pieces.len() == candidate.pieces.len()
+                        && of
+                            .pieces
+                            .iter()
+                            .zip(&candidate.pieces)
+                            .all(|(a, b)| a.joint == b.joint && a.shape == b.shape)
+                };
+                if !wanted.iter().any(is_known) {
+                    wanted.push(candidate);
+                }
+            }
+        }
+        let sizes = none.fit.sizes.clone();
+        let mut all: Vec<Found> = wanted
+            .into_iter()
+            .filter_map(|candidate| {
+                let mut effects = found.effects.clone();
+                effects.push(candidate);
+                self.with(none, effects, sizes.clone())
+            })
+            .collect();
+        all.sort_by(|a, b| b.score.total_cmp(&a.score));
+        let rest = all.split_off(all.len().min(REFINED));
+        let mut all: Vec<Found> =
+            all.into_iter().map(|of| self.refined(none, found, of)).chain(rest).collect();
+        all.sort_by(|a, b| b.score.total_cmp(&a.score));
+        all
+    }
+
+    /// The same set with the best shapes of its last effect.
+    fn refined(&self, none: &Found, found: &Found, of: Found) -> Found {
+        let Some(last) = of.effects.last() else { return of };
+        let without =
+            fitted(self.design, found.fit.hypothesis.clone(), without_forms(&of, found), 0, true);
+        let Some(without) = without else { return of };
+        let gains = Gains::new(self.design, &without);
+        let refine = |piece: &PieceRows| {
+            let moves = moves(piece.effect, self.records, piece);
+            let reshape =
+                |of: &PieceRows, shape: &[f64]| of.reshaped(self.design, self.records, shape);
+            refined(&gains, piece, &moves, lowest(self.records), &reshape)
+        };
+        let pieces: Vec<PieceRows> = last.pieces.iter().map(refine).collect();
+        if pieces.iter().zip(&last.pieces).all(|(a, b)| a.shape == b.shape) {
+            return of;
+        }
+        let mut effects = of.effects.clone();
+        if let Some(last) = effects.last_mut() {
+            last.pieces = pieces;
+        }
+        match self.with(none, effects, none.fit.sizes.clone()) {
+            Some(better) if better.score > of.score => better,
+            _ => of,
+        }
+    }
+}
+
+/// The sizes of a set without the forms of the effects that it has more than another one.
+fn without_forms(of: &Found, than: &Found) -> Sizes {
+    let count = than.fit.hypothesis.members.len();
+    let mut sizes = of.fit.sizes.clone();
+    for joint in &mut sizes {
+        joint.groups.retain(|(group, _)| !matches!(group, Group::Form(k) if *k >= count));
+    }
+    sizes
+}

@@ -1,0 +1,60 @@
+//! What a decision rests on: one entry for each gate that a hypothesis had to pass.
+
+use serde::Serialize;
+
+/// A gate, in the order in which they are asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Gate {
+    /// Evidence of the effect beside the others \[nats\], at least.
+    Evidence,
+    /// Evidence of a joint of the effect \[nats\], at least.
+    JointEvidence,
+    /// Share of the effect in a joint's torque \[1\], at least.
+    Size,
+    /// The leading parameter over its standard deviation \[1\], at least.
+    Deviations,
+    /// Standard deviations by which a parameter is beyond what is possible \[1\], at most.
+    Bounds,
+    /// Noise of the joint over that of the baseline \[1\], at most.
+    Noise,
+    /// What the effect leaves of the gap in the held-out data \[1\], at most.
+    HeldOut,
+    /// Torque that nothing explains, of the joint's torque \[1\], at most.
+    Unexplained,
+    /// Effects that the logs cannot tell from this one, itself included, at most.
+    Class,
+}
+
+/// The answer of a gate.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Entry {
+    /// What is asked about: an effect, with its joint (from 1) where the gate is about one.
+    pub hypothesis: String,
+    /// The gate.
+    pub gate: Gate,
+    /// The value.
+    pub value: f64,
+    /// Its limit.
+    pub limit: f64,
+    /// Whether it passed.
+    pub passed: bool,
+}
+
+impl Gate {
+    /// Whether values have to be at most the limit; otherwise at least.
+    #[must_use]
+    pub fn is_upper(self) -> bool {
+        match self {
+            Gate::Evidence | Gate::JointEvidence | Gate::Size | Gate::Deviations => false,
+            Gate::Bounds | Gate::Noise | Gate::HeldOut | Gate::Unexplained | Gate::Class => true,
+        }
+    }
+
+    /// The answer for a value.
+    #[must_use]
+    pub fn of(self, hypothesis: String, value: f64, limit: f64) -> Entry {
+        let passed = if self.is_upper() { value <= limit } else { value >= limit };
+        Entry { hypothesis, gate: self, value, limit, passed }
+    }
+}

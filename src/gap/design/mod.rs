@@ -1,0 +1,20 @@
+//! The rows of spectra that are compared, and everything that may explain them.
+//!
+//! A design has the rows of each joint: the difference between measured and predicted torque, and
+//! the torques of one standard deviation of each nuisance. Rows are grouped into cells: one log, one
+//! band of frequencies, one variance.
+
+mod basis;
+mod column;
+mod everyday;
+mod joint;
+mod parameters;
+mod piece;
+mod problem;
+mod trust;
+
+pub use everyday::Group;
+pub use joint::{Cell, JointDesign, Set};
+pub use piece::{Clock, PieceRows, Whole, link_pieces, piece_rows};
+pub use problem::Design;
+pub use trust::Trust;

@@ -1,0 +1,318 @@
+//! The columns of effects as rows of the joints that they reach.
+
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+
+use super::basis::{functions, rms};
+use super::column::{Column, Piece, columns_at, pieces};
+use super::joint::Set;
+use super::problem::Design;
+use crate::arm::dynamics::RIGID;
+use crate::arm::effects::{self, Effect, Form, Motion, Nature, Scope};
+use crate::gap::data::{Record, RecordKind};
+
+/// Rows of one effect at one joint, for one choice of its shape.
+#[derive(Clone)]
+pub struct PieceRows {
+    /// The effect.
+    pub effect: &'static Effect,
+    /// Joint, from 0; `None` of the robot.
+    pub joint: Option<usize>,
+    /// Values of all coordinates: the usual size for linear ones.
+    pub shape: Vec<f64>,
+    /// Number of shapes that are tried at the joint.
+    pub choices: usize,
+    /// Number of its own columns; behind them are those of the effects that it brings along.
+    pub own: usize,
+    /// Expected factor of each column, and its standard deviation.
+    pub prior: Vec<(f64, f64)>,
+    /// Joints that it reaches, with their rows.
+    pub rows: Vec<(usize, DMatrix<f64>)>,
+    /// The clock of its window, if it has one.
+    pub clock: Clock,
+}
+
+/// The time by which a window comes again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Clock {
+    /// That of the logs' columns `t`.
+    Absolute,
+    /// Each log begins at 0.
+    Log,
+}
+
+/// An effect that acts all the time, to be cut to windows.
+pub struct Whole {
+    effect: &'static Effect,
+    joint: Option<usize>,
+    shape: Vec<f64>,
+    columns: Vec<Column>,
+}
+
+impl Whole {
+    /// The effect at a joint; its last coordinates are start, end and period of the window.
+    #[must_use]
+    pub fn new(records: &[Record<'_>], effect: &'static Effect, joint: usize) -> Option<Whole> {
+        let scale = records.first()?.motion.scale(joint);
+        let mut shape: Vec<f64> = effect.coordinates.iter().map(|c| (c.usual)(&scale)).collect();
+        let n = shape.len();
+        shape[n - 3..].copy_from_slice(&[-LONG, LONG, 0.0]);
+        let columns = columns_at(effect, records, joint, &shape);
+        let joint = (effect.scope == Scope::Joint).then_some(joint);
+        Some(Whole { effect, joint, shape, columns })
+    }
+
+    /// The effect within a window \[s\].
+    #[must_use]
+    pub fn within(
+        &self,
+        design: &Design,
+        records: &[Record<'_>],
+        [start, end]: [f64; 2],
+        period: f64,
+        clock: Clock,
+        choices: usize,
+    ) -> PieceRows {
+        let mut shape = self.shape.clone();
+        let n = shape.len();
+        shape[n - 3..].copy_from_slice(&[start, end, period]);
+        let cut = |(record, series): (&Record<'_>, &Vec<(usize, Vec<f64>)>)| {
+            let of = |(joint, series): &(usize, Vec<f64>)| {
+                let pairs = series.iter().zip(&record.motion.t);
+                let begins = record.times.first().map_or(0.0, |(begins, _)| *begins);
+                let offset = if clock == Clock::Absolute { begins } else { 0.0 };
+                let acts = |t: f64| {
+                    let t = t + offset;
+                    let t = if period > 0.0 { t.rem_euclid(period) } else { t };
+                    (start..=end).contains(&t)
+                        || (period > 0.0 && (start..=end).contains(&(t + period)))
+                };
+                (*joint, pairs.map(|(x, t)| if acts(*t) { *x } else { 0.0 }).collect())
+            };
+            series.iter().map(of).collect()
+        };
+        let columns = self
+            .columns
+            .iter()
+            .map(|column| Column {
+                series: records.iter().zip(&column.series).map(cut).collect(),
+                mean: column.mean,
+                sd: column.sd,
+            })
+            .collect();
+        let piece = Piece { joint: self.joint, shape, choices, columns };
+        PieceRows { clock, ..to_rows(design, records, self.effect, piece) }
+    }
+}
+
+/// Longer than any log \[s\].
+const LONG: f64 = 1e9;
+
+/// All pieces of the effects that may be found.
+pub type Pieces = Vec<PieceRows>;
+
+/// The pieces of the effects on their first grids of shapes.
+#[must_use]
+pub fn piece_rows(design: &Design, records: &[Record<'_>], wanted: &[&'static Effect]) -> Pieces {
+    let n = records.first().map_or(0, |record| record.motion.model.dof);
+    let all: Vec<(&'static Effect, usize)> = wanted
+        .iter()
+        .filter(|e| e.channel == effects::Channel::Torque && !matches!(e.form, Form::Elsewhere))
+        .flat_map(|effect| {
+            let joints = (effect.joints)(n);
+            let count = if effect.scope == Scope::Robot { 1 } else { joints.len() };
+            joints.into_iter().take(count).map(|joint| (*effect, joint))
+        })
+        // Parameters have their columns already.
+        .filter(|(e, _)| e.nature != Nature::Parameters)
+        .collect();
+    all.into_par_iter()
+        .flat_map_iter(|(effect, joint)| {
+            let brought = brought_rows(design, records, effect, joint);
+            let with = |piece| to_rows(design, records, effect, piece).with_brought(&brought);
+            pieces(effect, records, joint).into_iter().map(with).collect::<Vec<_>>()
+        })
+        .collect()
+}
+
+/// Pieces of the parameters of each link.
+#[must_use]
+pub fn link_pieces(design: &Design, effect: &'static Effect) -> Pieces {
+    let n = design.joints.len();
+    // What the last link has more is what it carries.
+    (0..n.saturating_sub(1))
+        .map(|link| {
+            let rows = design.joints.iter().filter_map(|joint| {
+                let columns = joint.base.columns(RIGID * link, RIGID);
+                let mut rows = columns * design.tunables.link_change;
+                for cell in joint.cells.iter().filter(|cell| cell.set != Set::Now) {
+                    rows.rows_mut(cell.rows.start, cell.rows.len()).fill(0.0);
+                }
+                (rows.norm() > 0.0).then_some((joint.joint, rows))
+            });
+            PieceRows {
+                effect,
+                joint: Some(link),
+                shape: vec![1.0; RIGID],
+                choices: 1,
+                own: RIGID,
+                prior: vec![(0.0, 1.0); RIGID],
+                rows: rows.collect(),
+                clock: Clock::Log,
+            }
+        })
+        .collect()
+}
+
+impl PieceRows {
+    /// The same effect with other values of its shape.
+    #[must_use]
+    pub fn reshaped(&self, design: &Design, records: &[Record<'_>], shape: &[f64]) -> PieceRows {
+        let columns = columns_at(self.effect, records, self.joint.unwrap_or(0), shape);
+        let piece =
+            Piece { joint: self.joint, shape: shape.to_vec(), choices: self.choices, columns };
+        to_rows(design, records, self.effect, piece).with_brought(&self.brought())
+    }
+
+    /// The columns that it brings along.
+    fn brought(&self) -> Brought {
+        let count = self.prior.len() - self.own;
+        let rows = |(joint, rows): &(usize, DMatrix<f64>)| {
+            (*joint, rows.columns(self.own, count).into_owned())
+        };
+        Brought {
+            prior: self.prior[self.own..].to_vec(),
+            rows: self.rows.iter().map(rows).collect(),
+        }
+    }
+
+    /// The piece with columns behind its own.
+    fn with_brought(mut self, brought: &Brought) -> PieceRows {
+        for (joint, rows) in &brought.rows {
+            let height = rows.nrows();
+            let own = self.rows.iter().position(|(of, _)| of == joint).unwrap_or_else(|| {
+                self.rows.push((*joint, DMatrix::zeros(height, self.own)));
+                self.rows.len() - 1
+            });
+            let mut all = DMatrix::zeros(height, self.own + rows.ncols());
+            all.columns_mut(0, self.own).copy_from(&self.rows[own].1);
+            all.columns_mut(self.own, rows.ncols()).copy_from(rows);
+            self.rows[own].1 = all;
+        }
+        let more = brought.prior.len();
+        for (_, rows) in self.rows.iter_mut().filter(|(_, rows)| rows.ncols() < self.own + more) {
+            *rows = std::mem::take(rows).resize_horizontally(self.own + more, 0.0);
+        }
+        self.prior.extend(&brought.prior);
+        self
+    }
+
+    /// Functions of the variable of its law, of unit size: by joint, with their rows.
+    #[must_use]
+    pub fn forms(&self, design: &Design, records: &[Record<'_>]) -> Vec<(usize, DMatrix<f64>)> {
+        let Some(variable) = self.effect.variable else { return Vec::new() };
+        let motions: Vec<&Motion<'_>> = records.iter().map(|record| &record.motion).collect();
+        let of_joint = |joint: usize| {
+            let all = functions(variable, &motions, joint, &design.tunables);
+            let of = &design.joints[joint];
+            let mut rows = DMatrix::zeros(of.y.len(), all.len());
+            for (k, series) in all.iter().enumerate() {
+                let now = |(series, record): (&Vec<f64>, &Record<'_>)| -> Vec<f64> {
+                    if record.kind == RecordKind::Mean { series.clone() } else { Vec::new() }
+                };
+                let series: Vec<Vec<f64>> = series.iter().zip(records).map(now).collect();
+                let series: Vec<&[f64]> = series.iter().map(Vec::as_slice).collect();
+                of.rows_of(records, &series, rows.column_mut(k).as_mut_slice());
+            }
+            (joint, rows)
+        };
+        let own = |joint: &usize| self.joint.is_none_or(|own| own == *joint);
+        self.rows.iter().map(|(joint, _)| *joint).filter(own).map(of_joint).collect()
+    }
+
+    /// Root mean square of a column's rows at a joint.
+    #[must_use]
+    pub fn size(&self, joint: usize, column: usize) -> f64 {
+        let of = self.rows.iter().find(|(of, _)| *of == joint);
+        of.map_or(0.0, |(_, rows)| rms(rows.column(column).iter()))
+    }
+}
+
+/// Columns that an effect brings along.
+#[derive(Default)]
+struct Brought {
+    prior: Vec<(f64, f64)>,
+    rows: Vec<(usize, DMatrix<f64>)>,
+}
+
+/// The columns of the effects that an effect brings along.
+fn brought_rows(
+    design: &Design,
+    records: &[Record<'_>],
+    effect: &'static Effect,
+    joint: usize,
+) -> Brought {
+    let mut all = Brought::default();
+    if effect.scope == Scope::Robot {
+        return all;
+    }
+    for brought in effect.brings.iter().filter_map(|id| effects::find(id)) {
+        let Some(first) = pieces(brought, records, joint).into_iter().next() else { continue };
+        let of = to_rows(design, records, brought, first);
+        let before = all.prior.len();
+        all.prior.extend(of.prior);
+        for (at, rows) in of.rows {
+            match all.rows.iter_mut().find(|(known, _)| *known == at) {
+                Some((_, known)) => {
+                    let count = known.ncols();
+                    let mut both = DMatrix::zeros(rows.nrows(), count + rows.ncols());
+                    both.columns_mut(0, count).copy_from(known);
+                    both.columns_mut(count, rows.ncols()).copy_from(&rows);
+                    *known = both;
+                }
+                None => all.rows.push((at, rows.insert_columns(0, before, 0.0))),
+            }
+        }
+    }
+    all
+}
+
+fn to_rows(
+    design: &Design,
+    records: &[Record<'_>],
+    effect: &'static Effect,
+    piece: Piece,
+) -> PieceRows {
+    let mut rows = Vec::new();
+    for (joint, of_design) in design.joints.iter().enumerate() {
+        let of_joint = |series: &Vec<(usize, Vec<f64>)>| {
+            series.iter().any(|(of, x)| *of == joint && x.iter().any(|x| *x != 0.0))
+        };
+        if !piece.columns.iter().any(|column| column.series.iter().any(of_joint)) {
+            continue;
+        }
+        let mut of = DMatrix::zeros(of_design.y.len(), piece.columns.len());
+        for (k, column) in piece.columns.iter().enumerate() {
+            let series: Vec<&[f64]> = column
+                .series
+                .iter()
+                .map(|record| {
+                    let found = record.iter().find(|(of, _)| *of == joint);
+                    found.map_or(&[][..], |(_, series)| series.as_slice())
+                })
+                .collect();
+            of_design.rows_of(records, &series, of.column_mut(k).as_mut_slice());
+        }
+        rows.push((joint, of));
+    }
+    PieceRows {
+        effect,
+        joint: piece.joint,
+        shape: piece.shape,
+        choices: piece.choices,
+        own: piece.columns.len(),
+        prior: piece.columns.iter().map(|column| (column.mean, column.sd)).collect(),
+        rows,
+        clock: Clock::Log,
+    }
+}

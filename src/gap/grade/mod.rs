@@ -1,0 +1,18 @@
+//! What models miss of data that took no part, and where.
+
+mod attribution;
+mod bins;
+mod budget;
+mod heldout;
+mod interval;
+mod pieces;
+mod places;
+mod traces;
+
+pub use attribution::{Attribution, Cell, PARAMETERS, attribution};
+pub use bins::Quantity;
+pub use budget::{Budget, budget};
+pub use heldout::{JointGap, Shrink, beside_no_jump, predicted, shrink};
+pub use interval::Interval;
+pub use places::{places, places_missed};
+pub use traces::{Profile, Shape, Torques, Trace, missed, profile, shapes, trace};

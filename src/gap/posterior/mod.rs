@@ -1,0 +1,21 @@
+//! How probable the logs are with some effects, whatever the parameters of the model, the everyday
+//! errors and their sizes are.
+//!
+//! Linear Gaussian model by joint: `y = P θ + L φ + H c + n`. Parameters θ and factors c are common
+//! to the joints; everyday errors φ are a joint's own and are marginalised there first. Sizes of the
+//! groups of everyday errors maximise the marginal likelihood times their prior (empirical Bayes;
+//! D. MacKay, Bayesian interpolation, Neural Computation 4, 1992).
+
+mod evidence;
+mod fit;
+mod gain;
+mod hypothesis;
+mod reduced;
+mod shares;
+mod sizes;
+
+pub use evidence::Evidence;
+pub use fit::{Fit, fitted};
+pub use gain::Gains;
+pub use hypothesis::{Hypothesis, Member};
+pub use sizes::{JointSizes, Size, Sizes, usual};
