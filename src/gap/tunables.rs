@@ -121,8 +121,10 @@ tunables! {
     usual_error = 0.03, "1", "derived: 0.2 to 3 % of the torque";
     /// Noise over that of the baseline that is a finding.
     noise_ratio = 3.0, "1", "chosen on data/gap_cases";
-    /// Deviations from 0 of a leading parameter.
-    deviations = 3.0, "sd", "derived";
+    /// Size of an effect, of a larger one with which it may be confused at the same joint.
+    of_confused = 0.35, "1", "derived: three times the usual deviation of a form";
+    /// What is left of the gap in held-out data with an effect.
+    left_in_heldout = 0.9, "1", "derived: 1 to 0.5";
 }
 
 #[cfg(test)]

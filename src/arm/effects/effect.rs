@@ -113,14 +113,14 @@ pub struct Parameter {
     pub what: &'static str,
     /// Bounds of possible values.
     pub bounds: [f64; 2],
-    /// What a model has of it at a joint: no more than this can be taken away.
-    pub there: Option<fn(&Model, usize) -> f64>,
+    /// What a model has of it at a joint, `None` where it says nothing: no more can be taken away.
+    pub there: Option<fn(&Model, usize) -> Option<f64>>,
 }
 
 impl Parameter {
     /// A parameter of which a model has some already.
     #[must_use]
-    pub(super) const fn beside(self, there: fn(&Model, usize) -> f64) -> Parameter {
+    pub(super) const fn beside(self, there: fn(&Model, usize) -> Option<f64>) -> Parameter {
         Parameter { there: Some(there), ..self }
     }
 

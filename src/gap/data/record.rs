@@ -47,8 +47,10 @@ pub struct Record<'a> {
     /// When repetitions began, by the clock of all logs \[s\], and their weights in the record.
     /// The motion's own time begins at 0.
     pub times: Vec<(f64, f64)>,
-    /// The motion and the model's torques.
+    /// The motion, with the torques by which laws go.
     pub motion: Motion<'a>,
+    /// Torques of the model by joint \[Nm\].
+    pub modelled: Vec<Vec<f64>>,
     /// Measured torques by joint \[Nm\].
     pub measured: Vec<Vec<f64>>,
     /// Repetitions that were averaged.
@@ -183,6 +185,7 @@ impl<'a> Record<'a> {
             kind: RecordKind::Mean,
             times: (0..repetitions).map(|k| (begins + period * k as f64, share)).collect(),
             power: power.collect(),
+            modelled: motion.torque.clone(),
             motion,
             measured,
             repetitions,

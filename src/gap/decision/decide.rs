@@ -2,12 +2,13 @@
 
 use super::calibration::calibrated;
 use super::finding::{Estimated, Finding, Remainder, Verdict};
-use super::search::{Found, Search, Tried};
+use super::search::{Candidate, Found, Search, Tried};
 use super::trail::{Entry, Gate};
-use crate::arm::effects::{Effect, Scope};
+use crate::arm::effects::{Effect, Nature, Scope};
 use crate::gap::data::RecordKind;
 use crate::gap::design::{Set, Trust};
 use crate::gap::model::Fitted;
+use crate::gap::posterior::Fit;
 
 /// Ids of effects that a class has at most: more are unknown.
 const LARGEST_CLASS: usize = 5;
@@ -26,10 +27,8 @@ pub struct Decision {
     pub remainder: Vec<Remainder>,
     /// The answers of all gates.
     pub trail: Vec<Entry>,
-    /// The fit with what is asserted.
-    pub fit: Found,
-    /// The asserted effects with their parameters.
-    pub fitted: Vec<Fitted>,
+    /// What the model gets: asserted effects, and other values of parameters.
+    pub asserted: Vec<Candidate>,
     /// Everyday error by joint, of its torque.
     pub everyday: Vec<f64>,
 }
@@ -37,8 +36,7 @@ pub struct Decision {
 /// An effect that was found, with what the gates ask about it.
 struct Weighed {
     effect: &'static Effect,
-    /// By piece: its parameters, its share of its joint's torque, its evidence \[nats\].
-    pieces: Vec<(Fitted, f64, f64)>,
+    pieces: Vec<WeighedPiece>,
     /// The largest share of a joint's torque.
     size: f64,
     /// Evidence \[nats\].
@@ -49,24 +47,41 @@ struct Weighed {
     probability: f64,
 }
 
+/// An effect at a joint.
+struct WeighedPiece {
+    fitted: Fitted,
+    /// Share of the joint's torque.
+    share: f64,
+    /// Evidence \[nats\].
+    nats: f64,
+}
+
+/// What is asserted, and what is not.
+#[derive(Default)]
+struct Decided {
+    effects: Vec<Finding>,
+    candidates: Vec<Finding>,
+}
+
 /// Decides on what a search found.
 #[must_use]
-pub fn decide(search: &Search<'_>, none: &Found, found: Found, tried: &[Tried]) -> Decision {
+pub fn decide(search: &Search<'_>, none: &Found, found: &Found, tried: &[Tried]) -> Decision {
     let tunables = &search.design.tunables;
     let has_baseline = search.records.iter().any(|record| record.kind == RecordKind::Before);
     let n = search.design.joints.len();
     let mut trail = Vec::new();
     let noisy = noisy_joints(search, &mut trail);
     let weighed: Vec<Weighed> =
-        (0..found.effects.len()).map(|k| weigh(search, none, &found, k, tried)).collect();
+        (0..found.effects.len()).map(|k| weigh(search, none, found, k, tried)).collect();
     let least = if has_baseline { tunables.least_change } else { tunables.least_share };
     let everyday: Vec<f64> = (0..n).map(|j| found.fit.everyday(search.design, j)).collect();
     let left = |fit: &Found, joint: usize| match has_baseline {
         true => fit.fit.changed(search.design, joint),
         false => fit.fit.everyday(search.design, joint),
     };
-    let (mut kept, mut effects, mut candidates) = (Vec::new(), Vec::new(), Vec::new());
-    for (of, candidate) in weighed.iter().zip(&found.effects) {
+    let mut kept: Vec<Candidate> = Vec::new();
+    let mut decision = Decided::default();
+    for (number, (of, candidate)) in weighed.iter().zip(&found.effects).enumerate() {
         let mut ask = |gate: Gate, at: String, value: f64, limit: f64| {
             let entry = gate.of(at, value, limit);
             let passed = entry.passed;
@@ -77,46 +92,46 @@ pub fn decide(search: &Search<'_>, none: &Found, found: Found, tried: &[Tried]) 
         let mut passed = ask(Gate::Evidence, id.to_owned(), of.nats, tunables.least_nats);
         let limit = LARGEST_CLASS as f64;
         passed &= ask(Gate::Class, id.to_owned(), of.class.len() as f64, limit);
-        let mut joints = Vec::new();
-        for (k, (fitted, share, nats)) in of.pieces.iter().enumerate() {
-            let at = match fitted.joint {
-                Some(joint) => format!("{id} of joint {}", joint + 1),
-                None => id.to_owned(),
-            };
-            let least = match fitted.joint {
-                Some(joint) => least.max(tunables.over_everyday * left(&found, joint)),
-                None => least,
-            };
-            let is_quiet = fitted.joint.is_none_or(|joint| !noisy.contains(&joint));
+        let mut places = Vec::new();
+        for (k, piece) in of.pieces.iter().enumerate() {
+            let joint = piece.fitted.joint;
+            let at = joint.map_or(id.to_owned(), |joint| format!("{id} of joint {}", joint + 1));
+            let over = tunables.over_everyday;
+            let least = joint.map_or(least, |joint| least.max(over * left(found, joint)));
+            let largest = largest_confused(&weighed, number, joint);
+            let is_quiet = joint.is_none_or(|joint| !noisy.contains(&joint));
             let mut there = is_quiet
-                & ask(Gate::Size, at.clone(), *share, least)
-                & ask(Gate::Deviations, at.clone(), fitted.significance, tunables.deviations)
-                & ask(Gate::Bounds, at.clone(), fitted.beyond_bounds(), BEYOND);
+                & ask(Gate::Size, at.clone(), piece.share, least)
+                & ask(Gate::Bounds, at.clone(), piece.fitted.beyond_bounds(), BEYOND);
+            if largest > 0.0 {
+                let ratio = piece.share / largest;
+                there &= ask(Gate::Form, at.clone(), ratio, tunables.of_confused);
+            }
             if of.pieces.len() > 1 {
-                there &= ask(Gate::JointEvidence, at, *nats, tunables.joint_nats);
+                there &= ask(Gate::JointEvidence, at, piece.nats, tunables.joint_nats);
             }
             if there {
-                joints.push(k);
+                places.push(k);
             }
         }
-        let chosen: Vec<&Fitted> = if passed && !joints.is_empty() {
-            joints.iter().map(|k| &of.pieces[*k].0).collect()
-        } else {
-            of.pieces.iter().map(|(fitted, ..)| fitted).collect()
-        };
-        let finding = of.finding(&chosen);
-        if passed && !joints.is_empty() {
+        passed &= !places.is_empty();
+        let all = of.pieces.iter().enumerate();
+        let told = all.filter(|(k, _)| !passed || places.contains(k)).map(|(_, of)| &of.fitted);
+        let finding = of.finding(&told.collect::<Vec<_>>());
+        if passed {
             let mut candidate = candidate.clone();
-            candidate.pieces = joints.iter().map(|k| candidate.pieces[*k].clone()).collect();
+            candidate.pieces = places.iter().map(|k| candidate.pieces[*k].clone()).collect();
             kept.push(candidate);
-            effects.push(finding);
-        } else {
-            candidates.push(finding);
         }
+        // Other values of parameters are no effect, whatever their size.
+        let is_effect = passed && of.effect.nature != Nature::Parameters;
+        let list = if is_effect { &mut decision.effects } else { &mut decision.candidates };
+        list.push(finding);
     }
+    let has_parameters = kept.iter().any(|of| of.effect.nature == Nature::Parameters);
     let fit = match kept.len() {
         0 => None,
-        _ => search.with(none, kept, none.fit.sizes.clone()),
+        _ => search.with(none, kept.clone(), none.fit.sizes.clone()),
     };
     let fit =
         fit.unwrap_or_else(|| Found { effects: Vec::new(), score: 0.0, fit: none.fit.clone() });
@@ -132,15 +147,15 @@ pub fn decide(search: &Search<'_>, none: &Found, found: Found, tried: &[Tried]) 
         }
         trail.push(entry);
     }
-    let fitted = fitted(&fit);
+    let Decided { effects, candidates } = decision;
     let verdict = match (effects.is_empty(), remainder.is_empty()) {
-        (true, true) if has_baseline => Verdict::NoGap,
+        (true, true) if has_baseline && !has_parameters => Verdict::NoGap,
         (true, true) => Verdict::ParametersOnly,
         (true, false) => Verdict::Unknown,
         (false, true) => Verdict::Effect,
         (false, false) => Verdict::Partial,
     };
-    Decision { verdict, effects, candidates, remainder, trail, fit, fitted, everyday }
+    Decision { verdict, effects, candidates, remainder, trail, asserted: kept, everyday }
 }
 
 impl Weighed {
@@ -156,6 +171,20 @@ impl Weighed {
             size: self.size,
         }
     }
+}
+
+/// The largest share of a joint's torque of another effect with which one may be confused.
+fn largest_confused(weighed: &[Weighed], number: usize, joint: Option<usize>) -> f64 {
+    let own = weighed[number].effect;
+    let is_confused = |other: &Weighed| {
+        let (a, b) = (own, other.effect);
+        a.id != b.id && (a.confused.contains(&b.id) || b.confused.contains(&a.id))
+    };
+    let confused = weighed.iter().filter(|other| is_confused(other));
+    let there = confused.flat_map(|other| &other.pieces).filter(|piece| {
+        joint.is_none() || piece.fitted.joint.is_none() || piece.fitted.joint == joint
+    });
+    there.map(|piece| piece.share).fold(0.0, f64::max)
 }
 
 /// Parameters of an effect at its joints; with several joints their names end with the joint.
@@ -175,8 +204,8 @@ fn parameters(fitted: &[&Fitted]) -> Vec<Estimated> {
 }
 
 /// Parameters of all pieces of a fit.
-fn fitted(found: &Found) -> Vec<Fitted> {
-    let fit = &found.fit;
+#[must_use]
+pub fn fit_effects(fit: &Fit) -> Vec<Fitted> {
     let mut from = fit.mean.len() - fit.hypothesis.columns();
     let mut all = Vec::new();
     for member in &fit.hypothesis.members {
@@ -203,7 +232,7 @@ fn weigh(
     let score = |less: Option<Found>| less.map_or(0.0, |less| less.score);
     let without =
         if found.effects.len() > 1 { score(search.without(none, found, number)) } else { 0.0 };
-    let all = fitted(found);
+    let all = fit_effects(&found.fit);
     let n = search.design.joints.len();
     let share = |members: std::ops::Range<usize>, joint: usize| {
         found.fit.share(search.design, members, joint)
@@ -222,7 +251,7 @@ fn weigh(
             1 => found.score - without,
             _ => found.score - score(search.without_joint(none, found, number, k)),
         };
-        (fitted, size, nats)
+        WeighedPiece { fitted, share: size, nats }
     });
     let piece = &found.effects[number].pieces[0];
     let is_part = effect.scope == Scope::Robot && piece.rows.len() < n;

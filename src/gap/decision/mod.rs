@@ -9,7 +9,7 @@ mod trail;
 mod window;
 
 pub(super) use calibration::asserted;
-pub use decide::{Decision, decide, may_name_parameters};
+pub use decide::{Decision, decide, fit_effects, may_name_parameters};
 pub use finding::{Estimated, Finding, Place, Remainder, Verdict};
-pub use search::{Found, Search};
+pub use search::{Candidate, Found, Search, Tried};
 pub use trail::{Entry, Gate};

@@ -31,6 +31,7 @@ pub struct Candidate {
 }
 
 /// A set of effects.
+#[derive(Clone)]
 pub struct Found {
     /// The effects.
     pub effects: Vec<Candidate>,
@@ -179,10 +180,9 @@ impl Search<'_> {
                 _ => break,
             }
         }
-        let none_again = Found { effects: Vec::new(), score: 0.0, fit: none.fit.clone() };
         let best = match best {
             Some(best) => self.pruned(&none, best),
-            None => none_again,
+            None => none.clone(),
         };
         tried.push(best.tried());
         (none, best, tried)
@@ -208,6 +208,14 @@ impl Search<'_> {
             e += 1;
         }
         found
+    }
+
+    /// The set without the effects that have one of some ids.
+    #[must_use]
+    pub fn without_ids(&self, none: &Found, found: &Found, ids: &[&str]) -> Option<Found> {
+        let mut effects = found.effects.clone();
+        effects.retain(|of| !ids.contains(&of.effect.id));
+        if effects.is_empty() { Some(none.clone()) } else { self.with(none, effects, none.fit.sizes.clone()) }
     }
 
     /// The set without one of its effects.
@@ -279,6 +287,7 @@ impl Search<'_> {
             })
             .collect();
         all.sort_by(|a, b| b.score.total_cmp(&a.score));
+        if std::env::var("JP_S").is_ok() { for f in &all { eprintln!("  {:.1} {:?}", f.score, f.effects.iter().map(|e| (e.effect.id, e.pieces.iter().map(|p| (p.joint, p.shape.clone())).collect::<Vec<_>>())).collect::<Vec<_>>()); } }
         let rest = all.split_off(all.len().min(REFINED));
         let mut all: Vec<Found> =
             all.into_iter().map(|of| self.refined(none, found, of)).chain(rest).collect();

@@ -70,13 +70,15 @@ pub fn refined(
     lowest: f64,
     reshape: &dyn Fn(&PieceRows, &[f64]) -> PieceRows,
 ) -> PieceRows {
-    let mut best = piece.clone();
     if moves.is_empty() {
-        return best;
+        return piece.clone();
     }
+    // Tangents would make up for a shape that is off.
+    let gain_of = |of: &PieceRows, below: f64| gains.of(&of.without_tangents(), below);
+    let mut best = piece.clone();
     let mut below = lowest;
     for level in 0..LEVELS {
-        let mut most = gains.of(&best, below);
+        let mut most = gain_of(&best, below);
         let shrink = 0.5_f64.powi(level as i32);
         for _ in 0..ROUNDS {
             let mut improved = false;
@@ -93,7 +95,7 @@ pub fn refined(
                     if tried.rows.is_empty() {
                         continue;
                     }
-                    let gain = gains.of(&tried, below);
+                    let gain = gain_of(&tried, below);
                     if gain > most + LEAST {
                         (most, best, improved) = (gain, tried, true);
                         break;

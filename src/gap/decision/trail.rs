@@ -12,8 +12,9 @@ pub enum Gate {
     JointEvidence,
     /// Share of the effect in a joint's torque \[1\], at least.
     Size,
-    /// The leading parameter over its standard deviation \[1\], at least.
-    Deviations,
+    /// Share of the effect beside the largest one at the joint with which it may be confused
+    /// \[1\], at least.
+    Form,
     /// Standard deviations by which a parameter is beyond what is possible \[1\], at most.
     Bounds,
     /// Noise of the joint over that of the baseline \[1\], at most.
@@ -46,7 +47,7 @@ impl Gate {
     #[must_use]
     pub fn is_upper(self) -> bool {
         match self {
-            Gate::Evidence | Gate::JointEvidence | Gate::Size | Gate::Deviations => false,
+            Gate::Evidence | Gate::JointEvidence | Gate::Size | Gate::Form => false,
             Gate::Bounds | Gate::Noise | Gate::HeldOut | Gate::Unexplained | Gate::Class => true,
         }
     }

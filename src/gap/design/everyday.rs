@@ -93,13 +93,6 @@ pub(super) fn everyday(records: &[Record<'_>], joint: usize, tunables: &Tunables
         push(&mut all, Group::OtherPosition, torque, series);
     }
     push(&mut all, Group::Fixed, 1.0, lagged(&motions, joint, tunables.joint_lag));
-    if motions.first().is_some_and(|m| m.scale(joint).rotor == 0.0) {
-        let of = |m: &&Motion<'_>| -> Vec<f64> {
-            let inertia = m.mean_inertia(joint);
-            m.qdd[joint].iter().map(|x| tunables.missing_rotor * inertia * x).collect()
-        };
-        push(&mut all, Group::Fixed, 1.0, motions.iter().map(of).collect());
-    }
     all.extend(of_logs(records, joint));
     all
 }

@@ -190,7 +190,7 @@ fn difference(record: &Record<'_>, joint: usize) -> Vec<f64> {
         // The model does not drift.
         RecordKind::Drift => measured.clone(),
         RecordKind::Mean | RecordKind::Before => {
-            measured.iter().zip(&record.motion.torque[joint]).map(|(a, b)| a - b).collect()
+            measured.iter().zip(&record.modelled[joint]).map(|(a, b)| a - b).collect()
         }
     };
     record.rows_of(joint, &missed)

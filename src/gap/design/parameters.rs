@@ -47,7 +47,7 @@ pub struct Parameters {
 
 impl Parameters {
     pub(super) fn new(records: &[Record<'_>], trust: Trust, tunables: &Tunables) -> Parameters {
-        let mut all = prior(records, &trust.spread());
+        let mut all = prior(records, &trust.spread(), tunables);
         let path = [tunables.lag, tunables.lag_form];
         all.names.extend(OF_PATH.map(ToOwned::to_owned));
         all.deviations.extend(path);
@@ -84,7 +84,7 @@ impl Parameters {
 }
 
 /// Names and deviations of the model's parameters.
-fn prior(records: &[Record<'_>], spread: &Spread) -> Parameters {
+fn prior(records: &[Record<'_>], spread: &Spread, tunables: &Tunables) -> Parameters {
     let motions: Vec<&Motion<'_>> = records.iter().map(|record| &record.motion).collect();
     let mut all = Parameters {
         names: Vec::new(),
@@ -108,8 +108,13 @@ fn prior(records: &[Record<'_>], spread: &Spread) -> Parameters {
     for joint in 0..n {
         let scale = first.scale(joint);
         let largest = motions.iter().map(|m| m.scale(joint).torque[1]).fold(0.0, f64::max);
+        // A model without rotors lacks as much as its links have.
+        let rotor = match scale.rotor > 0.0 {
+            true => spread.inertia * scale.rotor,
+            false => tunables.missing_rotor * scale.inertia,
+        };
         let sizes = [
-            spread.inertia * scale.rotor,
+            rotor,
             spread.friction * scale.viscous,
             spread.friction * scale.coulomb,
             spread.offset * largest,

@@ -8,7 +8,7 @@ use super::column::{Column, Piece, columns_at, pieces};
 use super::joint::Set;
 use super::problem::Design;
 use crate::arm::dynamics::RIGID;
-use crate::arm::effects::{self, Effect, Form, Motion, Nature, Scope};
+use crate::arm::effects::{self, Effect, Form, Motion, Nature, Role, Scope};
 use crate::gap::data::{Record, RecordKind};
 
 /// Rows of one effect at one joint, for one choice of its shape.
@@ -230,11 +230,16 @@ impl PieceRows {
         self.rows.iter().map(|(joint, _)| *joint).filter(own).map(of_joint).collect()
     }
 
-    /// Root mean square of a column's rows at a joint.
+    /// The piece at just its shape.
     #[must_use]
-    pub fn size(&self, joint: usize, column: usize) -> f64 {
-        let of = self.rows.iter().find(|(of, _)| *of == joint);
-        of.map_or(0.0, |(_, rows)| rms(rows.column(column).iter()))
+    pub fn without_tangents(&self) -> PieceRows {
+        let is_shape = |role: &Role| matches!(role, Role::Shape(_));
+        let shapes = self.effect.coordinates.iter().filter(|of| is_shape(&of.role)).count();
+        let mut piece = self.clone();
+        for (k, (_, sd)) in piece.prior[..self.own].iter_mut().enumerate() {
+            *sd = if k % (1 + shapes) == 0 { *sd } else { 0.0 };
+        }
+        piece
     }
 }
 

@@ -81,7 +81,10 @@ fn refit(model: &mut Model, change: &DVector<f64>, sizes: &DVector<f64>) {
     }
     for joint in 0..n {
         let at = RIGID * n + JOINT * joint;
-        all[at] = model.motors.as_ref().map_or(0.0, |of| of.reflected_inertia(joint));
+        all[at] = match model.rotors() {
+            Some(motors) => motors.reflected_inertia(joint),
+            None => model.sensors.apparent_inertia[joint],
+        };
         all[at + 1] = model.friction.viscous[joint];
         all[at + 2] = model.friction.coulomb[joint];
         all[at + 3] = model.sensors.torque_offset[joint];
@@ -95,8 +98,9 @@ fn refit(model: &mut Model, change: &DVector<f64>, sizes: &DVector<f64>) {
     }
     for joint in 0..n {
         let at = RIGID * n + JOINT * joint;
-        if let Some(motors) = &mut model.motors {
-            motors.rotor_inertia[joint] = found[at] / motors.ratio[joint].powi(2);
+        match model.rotors_mut() {
+            Some(motors) => motors.rotor_inertia[joint] = found[at] / motors.ratio[joint].powi(2),
+            None => model.sensors.apparent_inertia[joint] = found[at],
         }
         model.friction.viscous[joint] = found[at + 1];
         model.friction.coulomb[joint] = found[at + 2];
@@ -125,8 +129,8 @@ fn add(model: &mut Model, now: &Model, fitted: &Fitted) {
     for (parameter, value) in effect.parameters.iter().zip(&fitted.parameters) {
         let value = value.clamp(parameter.bounds[0], parameter.bounds[1]);
         // As much as there is may be gone.
-        let there =
-            parameter.there.map_or(f64::INFINITY, |there| there(now, fitted.joint.unwrap_or(0)));
+        let joint = fitted.joint.unwrap_or(0);
+        let there = parameter.there.and_then(|there| there(now, joint)).unwrap_or(f64::INFINITY);
         let value = value.max(-there);
         let values = &mut model.effects[at].values;
         let Some((_, given)) = values.iter_mut().find(|(name, _)| name == parameter.name) else {

@@ -27,8 +27,7 @@ const LEAST: f64 = 1e-7;
 /// Standard parameters near `wanted` that a robot can have, whose torques are those of `wanted`
 /// as nearly as can be. `sizes` are the changes that are usual, of each.
 pub(super) fn possible(model: &Model, wanted: &DVector<f64>, sizes: &DVector<f64>) -> DVector<f64> {
-    let n = model.dof;
-    let mut at = inside(wanted, n);
+    let mut at = inside(wanted, model);
     if at == *wanted {
         return at;
     }
@@ -55,7 +54,7 @@ pub(super) fn possible(model: &Model, wanted: &DVector<f64>, sizes: &DVector<f64
         if off.norm() < SAME * goal.norm() {
             break;
         }
-        at = inside(&(at + &weighted * factor.solve(&off)), n);
+        at = inside(&(at + &weighted * factor.solve(&off)), model);
     }
     best.1
 }
@@ -96,7 +95,8 @@ fn matrix(base: &BaseParameters, width: usize) -> DMatrix<f64> {
 }
 
 /// The nearest parameters that can be.
-fn inside(parameters: &DVector<f64>, n: usize) -> DVector<f64> {
+fn inside(parameters: &DVector<f64>, model: &Model) -> DVector<f64> {
+    let n = model.dof;
     let mut result = parameters.clone();
     for link in 0..n {
         let at = RIGID * link;
@@ -106,8 +106,9 @@ fn inside(parameters: &DVector<f64>, n: usize) -> DVector<f64> {
         }
     }
     for joint in 0..n {
-        // Rotor, viscous and Coulomb friction; an offset may have any sign.
-        for k in 0..3 {
+        // Rotor, viscous and Coulomb friction; an offset may have any sign, and so may what a model
+        // without rotors has of them in its links.
+        for k in if model.rotors().is_some() { 0..3 } else { 1..3 } {
             let at = RIGID * n + JOINT * joint + k;
             result[at] = result[at].max(0.0);
         }

@@ -18,4 +18,4 @@ pub use evidence::Evidence;
 pub use fit::{Fit, fitted};
 pub use gain::Gains;
 pub use hypothesis::{Hypothesis, Member};
-pub use sizes::{JointSizes, Size, Sizes, usual};
+pub use sizes::{JointSizes, Size, Sizes, usual, without_everyday};

@@ -102,6 +102,22 @@ impl JointSizes {
     }
 }
 
+/// Sizes of a model of the logs as they are now, without everyday errors: what it misses is error.
+#[must_use]
+pub fn without_everyday(design: &Design) -> Sizes {
+    let mut all = usual(design);
+    let fixed = |value: f64| Size { value, median: value, spread: NONE };
+    for joint in &mut all {
+        joint.groups.iter_mut().for_each(|(_, size)| *size = fixed(NONE));
+        joint.error[3..6].fill(fixed(1.0 / NONE));
+    }
+    all
+}
+
+/// The size of a group that is not there; logs of the baseline have an error that is so much larger
+/// than their torques.
+const NONE: f64 = 1e-6;
+
 /// The prior medians of all joints.
 #[must_use]
 pub fn usual(design: &Design) -> Sizes {

@@ -19,9 +19,9 @@ pub(in crate::arm::effects) const FRICTION_LEVEL: Effect = Effect {
     source: "J. Swevers et al., Dynamic model identification for industrial robots, IEEE CSM 27, 2007",
     parameters: &[
         free("coulomb", "Nm", "change of Coulomb friction")
-            .beside(|model, joint| model.friction.coulomb[joint]),
+            .beside(|model, joint| Some(model.friction.coulomb[joint])),
         free("viscous", "Nm s/rad", "change of viscous friction")
-            .beside(|model, joint| model.friction.viscous[joint]),
+            .beside(|model, joint| Some(model.friction.viscous[joint])),
     ],
     coordinates: &[linear(|of| 0.3 * of.coulomb), linear(|of| 0.3 * of.viscous)],
     published: None,

@@ -19,7 +19,7 @@ pub(in crate::arm::effects) const ROTOR_INERTIA: Effect = Effect {
     law: "τ = inertia·q̈_motor",
     source: "M. Gautier, W. Khalil, Direct calculation of minimum set of inertial parameters, IEEE T-RA 6, 1990: of axes 1 and 2 grouped with the links",
     parameters: &[free("inertia", "kg m2", "change of the rotor inertia, at the joint").beside(
-        |model, joint| model.motors.as_ref().map_or(0.0, |of| of.reflected_inertia(joint)),
+        |model, joint| model.rotors().map(|of| of.reflected_inertia(joint)),
     )],
     coordinates: &[linear(usual)],
     published: None,
@@ -36,7 +36,7 @@ fn usual(of: &Scale) -> f64 {
 }
 
 fn change(model: &mut Model, joint: usize, values: &[f64]) {
-    match &mut model.motors {
+    match model.rotors_mut() {
         Some(motors) => {
             motors.rotor_inertia[joint] += values[0] / (motors.ratio[joint] * motors.ratio[joint]);
         }

@@ -20,11 +20,11 @@ pub(in crate::arm::effects) const WRIST_COUPLING: Effect = Effect {
     parameters: &[
         free("coupling", "1", "change of the turns of motor 6 per turn of axis 5"),
         free("coulomb", "Nm", "change of Coulomb friction of motor 6")
-            .beside(|model, _| model.friction.coulomb[model.dof - 1]),
+            .beside(|model, _| Some(model.friction.coulomb[model.dof - 1])),
         free("viscous", "Nm s/rad", "the same, viscous")
-            .beside(|model, _| model.friction.viscous[model.dof - 1]),
+            .beside(|model, _| Some(model.friction.viscous[model.dof - 1])),
         free("inertia", "kg m2", "change of the inertia of rotor 6, at the joint").beside(
-            |model, _| model.motors.as_ref().map_or(0.0, |of| of.reflected_inertia(model.dof - 1)),
+            |model, _| model.motors.as_ref().map(|of| of.reflected_inertia(model.dof - 1)),
         ),
     ],
     coordinates: &[
