@@ -30,7 +30,7 @@ const STEADY: f64 = 0.5;
 pub struct Jumps {
     /// Any smaller one is possible.
     pub least: f64,
-    /// Jumps beyond this many per s, to the power of `order`, are impossible …
+    /// Jumps beyond this times the interval \[s\] to the power of `order` are impossible …
     pub per_time: f64,
     /// … where 2 stands for positions and 1 for rates.
     pub order: i32,

@@ -5,8 +5,8 @@
 
 use std::borrow::Cow;
 
-/// Marks of groups beside point and comma; the last three are narrow spaces and the apostrophe of
-/// typesetting.
+/// Marks of groups beside point and comma; the last three are the spaces that do not break a line,
+/// and the apostrophe of typesetting.
 const GROUPING: [char; 5] = [' ', '\'', '\u{a0}', '\u{202f}', '\u{2019}'];
 /// Digits in a group.
 const GROUP: usize = 3;
