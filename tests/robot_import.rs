@@ -186,6 +186,69 @@ fn a_urdf_of_an_abb_arm_has_closed_inverse_kinematics() {
     }
 }
 
+/// The arm with other moments of the link "upper".
+fn with_moments(moments: &str) -> String {
+    let upper = link("upper").replace("ixx=\"0.02\" iyy=\"0.02\" izz=\"0.01\" ixy=\"0\"", moments);
+    changed(&link("upper"), &upper)
+}
+
+#[test]
+fn inertias_that_no_body_has_become_the_nearest_ones() {
+    for (moments, nearest, said) in [
+        // More than the sum of the others; negative; not positive definite; none.
+        (
+            "ixx=\"0.02\" iyy=\"0.02\" izz=\"0.07\" ixy=\"0\"",
+            [0.03, 0.03, 0.06],
+            "1.732e-2 kg m2 (22.94 %)",
+        ),
+        (
+            "ixx=\"-0.02\" iyy=\"0.02\" izz=\"0.01\" ixy=\"0\"",
+            [0.0, 0.015, 0.015],
+            "2.121e-2 kg m2",
+        ),
+        ("ixx=\"0.02\" iyy=\"0.02\" izz=\"0.01\" ixy=\"0.05\"", [0.02, 0.02, 0.04], "exceeds"),
+        ("ixx=\"0\" iyy=\"0\" izz=\"0\" ixy=\"0\"", [0.0; 3], "2 kg, but no inertia; a point mass"),
+        ("ixx=\"0.02\" iyy=\"0.02\" izz=\"0\" ixy=\"0\"", [0.02, 0.02, 0.0], "a thin rod"),
+    ] {
+        let model = model(&with_moments(moments));
+        let assumed = model.assumed();
+        assert_eq!(assumed.len(), 1, "{assumed:?}");
+        let named = assumed[0].contains("link \"upper\" in line 3") && assumed[0].contains(said);
+        assert!(named, "{assumed:?}");
+        assert!(model.links[0].is_consistent());
+        assert_eq!(model.links[0].com, Vector3::new(0.0, 0.0, 0.1));
+        if !moments.contains("0.05") {
+            let found = model.links[0].inertia.diagonal();
+            assert!((found - Vector3::from(nearest)).norm() < 1e-12, "{found}");
+        }
+    }
+    assert!(model(&arm()).assumed().is_empty());
+}
+
+#[test]
+fn every_command_tells_of_a_changed_inertia() {
+    let folder = tempfile::tempdir().unwrap();
+    let moments = "ixx=\"0.02\" iyy=\"0.02\" izz=\"0.07\" ixy=\"0\"";
+    let urdf = written(&folder, "arm.urdf", with_moments(moments));
+    let row = |i: u32| {
+        let (sin, cos) = (0.1 * f64::from(i)).sin_cos();
+        format!("{},{sin},{cos},{},{}\n", 0.02 * f64::from(i), 10.0 * cos, 5.0 - 7.0 * sin)
+    };
+    let rows: String = (0..400).map(row).collect();
+    let log = written(&folder, "log.csv", "t,q1,q2,tau1,tau2\n".to_owned() + &rows);
+    for args in [
+        &["robots", "check", &urdf][..],
+        &["robots", "import", &urdf],
+        &["predict", "--robot", &urdf, "--log", &log],
+        &["identify", "--robot", &urdf, "--log", &log, "--free", "friction"],
+        &["diagnose", "--robot", &urdf, "--log", &log],
+    ] {
+        let notes = stderr(&command::joulepath(args));
+        assert!(notes.contains("the inertia of link \"upper\" in line 3"), "{args:?}: {notes}");
+    }
+    assert!(robots(&["check", &urdf]).status.success());
+}
+
 #[test]
 fn wrong_urdfs_name_the_line_and_the_way_out() {
     let eight: String = (0..9).map(|i| link(&format!("l{i}"))).collect::<String>()
@@ -201,8 +264,6 @@ fn wrong_urdfs_name_the_line_and_the_way_out() {
         changed("</joint>", "<mimic joint=\"j2\"/></joint>"),
         changed("value=\"2\"", "value=\"-2\"").replace("base", "fundament"),
         arm().replace("value=\"2\"", "value=\"-2\""),
-        arm().replace("ixx=\"0.02\"", "ixx=\"-0.02\""),
-        arm().replace("ixy=\"0\"", "ixy=\"0.05\""),
         format!("<robot name=\"eight\">\n{eight}</robot>"),
         changed("type=\"revolute\"", "type=\"prismatic\""),
         changed("lower=\"-2\"", "lower=\"3\""),
@@ -232,7 +293,6 @@ fn wrong_urdfs_name_the_line_and_the_way_out() {
         changed("<parent link=\"base\"/>", ""),
         changed(">80<", ">-80<"),
         changed("<joint name=\"j2\"/>", "<joint name=\"j3\"/>"),
-        changed("izz=\"0.01\"", "izz=\"0.05\""),
         changed("izz=\"0.01\"", "izz=\"10000\"").replacen("0.02", "10000", 2),
         changed(
             "<link name=\"flange\"/>",

@@ -55,6 +55,30 @@ impl Link {
         })
     }
 
+    /// Number of principal moments that are 0: one of a thin rod, three of a point mass.
+    pub(super) fn thin_axes(&self) -> usize {
+        let moments = principal_moments(&self.inertia);
+        moments.iter().filter(|moment| **moment <= ROUNDING * moments[2]).count()
+    }
+
+    /// The body with the nearest inertia that a distribution of positive mass can have; nearest in
+    /// the Frobenius norm.
+    pub(super) fn nearest(&self) -> Link {
+        if self.is_consistent() {
+            return self.clone();
+        }
+        let SymmetricEigen { eigenvectors: axes, eigenvalues: moments } =
+            SymmetricEigen::new(self.inertia);
+        let mut order = [0, 1, 2];
+        order.sort_by(|a, b| moments[*a].total_cmp(&moments[*b]));
+        let mut nearest = Vector3::zeros();
+        for (axis, moment) in order.into_iter().zip(nearest_moments(order.map(|k| moments[k]))) {
+            nearest[axis] = moment;
+        }
+        let inertia = axes * Matrix3::from_diagonal(&nearest) * axes.transpose();
+        Link { inertia, ..self.clone() }
+    }
+
     /// The body in the parent frame of its frame.
     pub(super) fn placed(&self, placed: &Isometry3<f64>) -> Link {
         let r = placed.rotation.to_rotation_matrix();
@@ -128,8 +152,51 @@ pub(super) fn symmetric([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Matrix3<f64> {
     Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
 }
 
+/// The principal moments of a body nearest to three ascending numbers, one of which is negative or
+/// exceeds the sum of the other two.
+fn nearest_moments([a, b, c]: [f64; 3]) -> [f64; 3] {
+    // On the plane a + b = c are the bodies without extent along the third axis.
+    let excess = (c - a - b) / 3.0;
+    if a + excess >= 0.0 {
+        return [a + excess, b + excess, c - excess];
+    }
+    // A rod has no moment about its own axis.
+    let across = f64::midpoint(b, c).max(0.0);
+    [0.0, across, across]
+}
+
 fn principal_moments(inertia: &Matrix3<f64>) -> [f64; 3] {
     let mut moments: [f64; 3] = SymmetricEigen::new(*inertia).eigenvalues.into();
     moments.sort_by(f64::total_cmp);
     moments
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The conditions of the nearest point of a cone: it is in the cone, and the rest is orthogonal
+    /// to it and not towards any edge.
+    #[test]
+    fn the_nearest_body_is_the_nearest() {
+        for moments in [
+            [0.02, 0.02, 0.05],
+            [-0.01, 0.02, 0.02],
+            [-0.05, 0.01, 0.02],
+            [0.0, 0.0, 0.3],
+            [-0.3, -0.2, -0.1],
+            [-0.3, -0.2, 0.1],
+            [-0.2, 0.1, 0.12],
+        ] {
+            let given = Vector3::from(moments);
+            let nearest = Vector3::from(nearest_moments(moments));
+            let [a, b, c] = nearest.into();
+            assert!(a >= 0.0 && a <= b && b <= c && c <= a + b + 1e-15, "{nearest}");
+            let rest = given - nearest;
+            assert!(rest.dot(&nearest).abs() < 1e-15, "{moments:?}");
+            for edge in [[0.0, 1.0, 1.0], [1.0, 0.0, 1.0], [1.0, 1.0, 0.0]] {
+                assert!(rest.dot(&Vector3::from(edge)) < 1e-15, "{moments:?}");
+            }
+        }
+    }
 }

@@ -33,7 +33,7 @@ mod updated;
 mod whiteness;
 mod wrist;
 
-pub use clean::cleaned;
+pub use clean::{cleaned, plausible};
 pub use clocks::synchronised;
 pub(crate) use consistent::{Piece, Target, consistent};
 pub use descent::{Descent, by_descent};

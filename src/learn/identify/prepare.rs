@@ -213,11 +213,11 @@ fn thinned(section: &Section) -> Section {
 fn of_cycles(log: &Log) -> Option<f64> {
     let cycle = log.column(Channel::Cycle)?;
     let t = log.time();
-    let begins: Vec<f64> =
-        (1..t.len()).filter(|i| cycle[*i] != cycle[i - 1]).map(|i| t[i]).collect();
-    // Complete repetitions lie between two changes.
-    let count = begins.len().checked_sub(1).filter(|count| *count > 0)?;
-    Some((begins[count] - begins[0]) / count as f64)
+    let begins: Vec<usize> = (1..t.len()).filter(|i| cycle[*i] != cycle[i - 1]).collect();
+    // Complete repetitions lie between two changes; the log may lack some of them.
+    let (first, last) = (*begins.first()?, *begins.last()?);
+    let count = (cycle[last] - cycle[first]).max((begins.len() - 1) as f64);
+    (count > 0.0).then(|| (t[last] - t[first]) / count)
 }
 
 /// Instants of one period: the mean of all repetitions.

@@ -31,7 +31,7 @@ impl Log {
                 value => Err(format!("{} is '{value}', not a number", column.name)),
             };
             let values: Result<Vec<f64>, String> = known.iter().map(value).collect();
-            rows.push(row as u64 + 1, values.as_deref().map_err(Clone::clone));
+            rows.push(row as u64 + 1, values);
         }
         rows.finish()
     }

@@ -9,13 +9,14 @@
 //!
 //! No polynomial fits across a jump of the acceleration. There the window is moved and narrowed,
 //! with fewer terms, until the residuals are within the noise; among these fits the one with the
-//! least variance of the acceleration is used.
+//! least variance of the acceleration is used. Where rows are missing as well, the samples may not
+//! tell on which side of the jump they are; then there is no derivative.
 
 use std::ops::Range;
 
 use nalgebra::{SMatrix, SVector};
 
-use super::uniform::between_gaps;
+use super::uniform::{between_gaps, median_step};
 
 /// Number of coefficients of the polynomial: degree 5.
 const TERMS: usize = 6;
@@ -34,23 +35,45 @@ const HALF_WIDTHS: [usize; 8] = [4, 6, 9, 13, 19, 28, 40, 56];
 /// Accepted ratio of the squared prediction error to the least one: rates profit more from a wide
 /// window than positions.
 const NEXT_TO_LEAST: f64 = 1.05;
-/// Approximate largest number of samples whose prediction is evaluated.
-const TRIALS: usize = 400;
+/// Approximate number of samples whose prediction is evaluated. Usual numbers of rows are no
+/// multiples of it, so that a few rows more or less do not change the samples.
+const TRIALS: usize = 743;
+/// Share of the prediction errors that count; the largest ones are of windows across jumps.
+const COUNTED: f64 = 0.9;
 /// An interval longer than the median by this factor ends a section.
 const GAP: f64 = 5.0;
+/// An interval longer than the median by this factor lacks a row.
+const LACKS: f64 = 1.75;
+/// Largest ratio of the standard deviation of an acceleration beside a gap to those of others, and
+/// the standard deviation of an acceleration that is exact for any robot \[rad/s²\].
+const VAGUE: f64 = 4.0;
+const EXACT: f64 = 1e-3;
+/// Relative rounding errors of the normal equations.
+const SOLVED: f64 = 1e-12;
+/// Largest deviation of a step of a rounded series from a multiple of the smallest one, and the
+/// least ratio of its fast steps to that one.
+const WHOLE: f64 = 0.01;
+const MULTIPLES: f64 = 10.0;
+/// Largest ratio of the variances of two fits that are equally good, and their least difference in
+/// standard deviations that is a contradiction.
+const RIVAL: f64 = 3.0;
+const APART: f64 = 20.0;
 /// A rate below this number of standard deviations counts as 0.
 const AT_REST: f64 = 3.0;
 
 /// First and second derivative of `x`, per s and s², at the ascending times `t` \[s\]; `None` in a
-/// section that is too short for a parabola. A first derivative within the noise is 0.
+/// section that is too short for a parabola, and where missing rows make the second derivative
+/// vague. A first derivative within the noise is 0.
 #[must_use]
 pub fn derivatives(t: &[f64], x: &[f64]) -> Vec<Option<[f64; 2]>> {
     let sections = between_gaps(t, GAP);
-    let half = half_width(t, x, &sections);
+    let trials = trials(t);
+    let half = half_width(t, x, &sections, &trials);
     let mut found = vec![None; t.len()];
-    let smooth = Smooth::new(t, x, &sections);
+    let mut smooth = Smooth::new(t, x, &sections, &trials);
+    smooth.variance = smooth.variance.max(rounding(x));
     // Variance of the noise, from prediction errors; jumps increase these.
-    let noise = error_of(t, x, &sections, half).unwrap_or(0.0).min(smooth.variance);
+    let noise = error_of(t, x, &sections, &trials, half).unwrap_or(0.0).min(smooth.variance);
     for section in &sections {
         for i in section.clone() {
             found[i] = smooth.fit(section, i, half).map(|fit| {
@@ -63,31 +86,62 @@ pub fn derivatives(t: &[f64], x: &[f64]) -> Vec<Option<[f64; 2]>> {
     found
 }
 
+/// The samples whose prediction is evaluated: chosen by their time, so that the loss of some rows
+/// does not change the others.
+fn trials(t: &[f64]) -> Vec<bool> {
+    let start = t.first().map_or(0.0, |first| first.floor());
+    let step = median_step(t);
+    let stride = (t.len() / TRIALS).max(1).next_power_of_two() as u64;
+    t.iter().map(|t| (((t - start) / step).round() as u64).is_multiple_of(stride)).collect()
+}
+
+/// Variance of the rounding: to multiples of the smallest step if the series consists of these, else
+/// of the numbers. The residuals of a motion by whole steps do not show it.
+fn rounding(x: &[f64]) -> f64 {
+    let steps = || x.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 0.0);
+    let least = steps().fold(f64::INFINITY, f64::min);
+    let multiples = || steps().map(|step| step / least);
+    let off = multiples().map(|multiple| (multiple - multiple.round()).abs());
+    let are_whole = quantile(off.collect(), FAST) < WHOLE;
+    if are_whole && quantile(multiples().collect(), FAST) > MULTIPLES {
+        return least * least / 12.0;
+    }
+    let largest = x.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    (SOLVED * largest).powi(2)
+}
+
 /// Half width of the window for a series.
-fn half_width(t: &[f64], x: &[f64], sections: &[Range<usize>]) -> usize {
+fn half_width(t: &[f64], x: &[f64], sections: &[Range<usize>], trials: &[bool]) -> usize {
     let errors: Vec<(usize, f64)> = HALF_WIDTHS
         .iter()
-        .filter_map(|half| Some((*half, error_of(t, x, sections, *half)?)))
+        .filter_map(|half| Some((*half, error_of(t, x, sections, trials, *half)?)))
         .collect();
     let least = errors.iter().fold(f64::INFINITY, |least, (_, error)| least.min(*error));
     let wide = errors.iter().rev().find(|(_, error)| *error <= NEXT_TO_LEAST * least);
     wide.map_or(HALF_WIDTHS[0], |(half, _)| *half)
 }
 
-/// Mean squared leave-one-out prediction error; `None` if no window of this width fits.
-fn error_of(t: &[f64], x: &[f64], sections: &[Range<usize>], half: usize) -> Option<f64> {
-    let stride = t.len().div_ceil(TRIALS).max(1);
-    let (mut sum, mut count) = (0.0, 0.0);
+/// Mean square of the smaller leave-one-out prediction errors; `None` if no window of this width
+/// fits.
+fn error_of(
+    t: &[f64],
+    x: &[f64],
+    sections: &[Range<usize>],
+    trials: &[bool],
+    half: usize,
+) -> Option<f64> {
+    let mut squares = Vec::new();
     for section in sections {
-        for i in inner(section, half).step_by(stride) {
+        for i in inner(section, half).filter(|i| trials[*i]) {
             let Some(fit) = fit(t, x, section, i, half) else { continue };
             // The leave-one-out error follows from the fit with the sample.
             let miss = (x[i] - fit.value) / (1.0 - fit.leverage).max(f64::EPSILON);
-            sum += miss * miss;
-            count += 1.0;
+            squares.push(miss * miss);
         }
     }
-    (count > 0.0).then(|| sum / count)
+    squares.sort_by(f64::total_cmp);
+    squares.truncate((COUNTED * squares.len() as f64).ceil() as usize);
+    (!squares.is_empty()).then(|| squares.iter().sum::<f64>() / squares.len() as f64)
 }
 
 /// The samples of a section with a whole window around them.
@@ -95,20 +149,21 @@ fn inner(section: &Range<usize>, half: usize) -> Range<usize> {
     section.start + half..section.end.saturating_sub(half)
 }
 
-/// A series, and the variance of its noise in the narrowest windows.
+/// A series, the rows before which others are missing, and the variance of the noise in the
+/// narrowest windows.
 struct Smooth<'a> {
     t: &'a [f64],
     x: &'a [f64],
+    lacks: Vec<usize>,
     variance: f64,
 }
 
 impl<'a> Smooth<'a> {
-    fn new(t: &'a [f64], x: &'a [f64], sections: &[Range<usize>]) -> Smooth<'a> {
+    fn new(t: &'a [f64], x: &'a [f64], sections: &[Range<usize>], trials: &[bool]) -> Smooth<'a> {
         let half = HALF_WIDTHS[0];
-        let stride = t.len().div_ceil(TRIALS).max(1);
         let looks: Vec<[f64; 2]> = sections
             .iter()
-            .flat_map(|section| inner(section, half).step_by(stride))
+            .flat_map(|section| inner(section, half).filter(|i| trials[*i]))
             .filter_map(|i| {
                 let fit = window_fit(t, x, i - half..i + half + 1, i, TERMS)?;
                 Some([(x[i + half] - x[i - half]).abs(), fit.left])
@@ -117,7 +172,9 @@ impl<'a> Smooth<'a> {
         // A resting series is rounded to a constant, which hides its noise.
         let fast = quantile(looks.iter().map(|of| of[0]).collect(), FAST);
         let moving = looks.iter().filter(|of| of[0] >= MOVING * fast);
-        Smooth { t, x, variance: quantile(moving.map(|of| of[1]).collect(), 0.5) }
+        let long = LACKS * median_step(t);
+        let lacks = (1..t.len()).filter(|i| t[*i] - t[i - 1] > long).collect();
+        Smooth { t, x, lacks, variance: quantile(moving.map(|of| of[1]).collect(), 0.5) }
     }
 
     /// Whether the residuals of a fit are within the noise.
@@ -128,37 +185,87 @@ impl<'a> Smooth<'a> {
     /// The fit around sample `i` of a section, or an off-centre fit if the centred one fails.
     fn fit(&self, section: &Range<usize>, i: usize, half: usize) -> Option<Fit> {
         let centred = fit(self.t, self.x, section, i, half)?;
+        if self.is_vague_beside_gap(section, i, half, &centred) {
+            return None;
+        }
         if self.variance == 0.0 || self.fits(&centred) {
             return Some(centred);
         }
-        let mut surest: Option<Fit> = None;
-        let mut least: Option<Fit> = None;
-        for half in HALF_WIDTHS.into_iter().filter(|other| *other <= half) {
-            let width = 2 * half + 1;
-            let low = (i + 1).saturating_sub(width).max(section.start);
-            let high = i.min(section.end.saturating_sub(width));
-            let places = (low..high).step_by((width / PLACES).max(1)).chain([high]);
-            // A section shorter than the window has no position for it.
-            for first in places.filter(|first| *first >= low) {
-                for terms in [FEW_TERMS, TERMS] {
-                    let Some(fit) = window_fit(self.t, self.x, first..first + width, i, terms)
-                    else {
-                        continue;
-                    };
-                    let surer = surest
-                        .as_ref()
-                        .is_none_or(|of| fit.acceleration_variance < of.acceleration_variance);
-                    let error = |of: &Fit| of.left * of.acceleration_variance;
-                    if surer && self.fits(&fit) {
-                        surest = Some(fit);
-                    } else if least.as_ref().is_none_or(|of| error(&fit) < error(of)) {
-                        least = Some(fit);
-                    }
+        let (mut fits, mut least): (Vec<Fit>, Option<Fit>) = (Vec::new(), None);
+        for window in windows(section, i, half) {
+            for terms in [FEW_TERMS, TERMS] {
+                let Some(fit) = window_fit(self.t, self.x, window.clone(), i, terms) else {
+                    continue;
+                };
+                let error = |of: &Fit| of.left * of.acceleration_variance;
+                if self.fits(&fit) {
+                    fits.push(fit);
+                } else if least.as_ref().is_none_or(|of| error(&fit) < error(of)) {
+                    least = Some(fit);
                 }
             }
         }
+        let variance = |fit: &Fit| fit.acceleration_variance;
+        let surest = fits.iter().min_by(|a, b| variance(a).total_cmp(&variance(b))).copied();
+        if self.lacks_rows_near(i, 2 * HALF_WIDTHS[0])
+            && surest.is_some_and(|surest| fits.iter().any(|fit| self.contradicts(fit, &surest)))
+        {
+            return None;
+        }
         surest.or(least).or(Some(centred))
     }
+
+    /// Whether a fit is much less certain than others because a gap ends its window.
+    fn is_vague_beside_gap(
+        &self,
+        section: &Range<usize>,
+        i: usize,
+        half: usize,
+        found: &Fit,
+    ) -> bool {
+        let after_gap = section.start > 0 && i < section.start + half;
+        let before_gap = section.end < self.t.len() && i + half >= section.end;
+        if !after_gap && !before_gap || self.variance * found.acceleration_variance < EXACT * EXACT
+        {
+            return false;
+        }
+        let middle = i.max(section.start + half).min(section.end.saturating_sub(half + 1));
+        let inner =
+            fit(self.t, self.x, section, middle.clamp(section.start, section.end - 1), half);
+        inner.is_some_and(|inner| {
+            found.acceleration_variance > VAGUE * VAGUE * inner.acceleration_variance
+        })
+    }
+
+    /// Whether rows are missing within a number of rows around a sample.
+    fn lacks_rows_near(&self, i: usize, reach: usize) -> bool {
+        let next = self.lacks.partition_point(|row| row + reach <= i);
+        self.lacks.get(next).is_some_and(|row| *row <= i + reach)
+    }
+
+    /// Whether a fit is as good as the surest one, but has another acceleration.
+    fn contradicts(&self, fit: &Fit, surest: &Fit) -> bool {
+        let [own, other] = [fit, surest].map(|fit| fit.acceleration_variance);
+        let apart = (fit.acceleration - surest.acceleration).powi(2);
+        own <= RIVAL * other && apart > APART * APART * self.variance * (own + other)
+    }
+}
+
+/// The windows of a section around a sample, from the narrowest up.
+fn windows(
+    section: &Range<usize>,
+    i: usize,
+    half: usize,
+) -> impl Iterator<Item = Range<usize>> + use<> {
+    let (start, end) = (section.start, section.end);
+    HALF_WIDTHS.into_iter().filter(move |other| *other <= half).flat_map(move |half| {
+        let width = 2 * half + 1;
+        let low = (i + 1).saturating_sub(width).max(start);
+        let high = i.min(end.saturating_sub(width));
+        let places = (low..high).step_by((width / PLACES).max(1)).chain([high]);
+        // A section shorter than the window has no position for it.
+        places.filter(move |first| *first >= low).map(move |first| first..first + width)
+    })
 }
 
 /// The quantile of values; 0 for an empty list.
@@ -168,6 +275,7 @@ fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
     values.get((share * last) as usize).copied().unwrap_or(0.0)
 }
 
+#[derive(Clone, Copy)]
 struct Fit {
     value: f64,
     rate: f64,

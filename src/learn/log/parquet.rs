@@ -7,7 +7,7 @@ use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::{Field, Row};
 
-use super::columns::{ColumnMap, check, recognised};
+use super::columns::{Column, ColumnMap, check, recognised};
 use super::data::Log;
 use super::error::LogError;
 use super::rows::Rows;
@@ -33,15 +33,11 @@ fn read(bytes: &[u8], map: &ColumnMap) -> Result<Log, LogError> {
     let columns = recognised(&names, map);
     check(&columns, &names, map)?;
     let mut rows = Rows::new(&columns);
-    let mut values = Vec::with_capacity(columns.len());
     for (index, row) in reader.get_row_iter(None).map_err(|e| wrong(&e))?.enumerate() {
         let row = row.map_err(|e| wrong(&e))?;
-        values.clear();
-        let read = columns.iter().try_for_each(|column| {
-            values.push(number(&row, column.index, &column.name)? * column.named.unit);
-            Ok(())
-        });
-        rows.push(FIRST_ROW + index as u64, read.map(|()| values.as_slice()));
+        let value =
+            |column: &Column| Ok(number(&row, column.index, &column.name)? * column.named.unit);
+        rows.push(FIRST_ROW + index as u64, columns.iter().map(value).collect());
     }
     rows.finish()
 }

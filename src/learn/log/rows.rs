@@ -4,12 +4,10 @@ use super::channel::Channel;
 use super::columns::Column;
 use super::data::{Log, MIN_ROWS, Rejected};
 use super::error::LogError;
+use super::time_order::disordered;
 
 /// Limit of valid times \[s\].
 const NO_CLOCK: f64 = 1e12;
-/// A row whose time leaps by this multiple of the interval between its neighbours is invalid, not
-/// the rows after it.
-const LEAP: f64 = 100.0;
 
 /// A log during reading.
 pub(super) struct Rows {
@@ -34,17 +32,16 @@ impl Rows {
         Rows { log, time }
     }
 
-    /// Adds the values of a row, or the reason of its rejection; times have to ascend.
-    pub(super) fn push(&mut self, row: u64, values: Result<&[f64], String>) {
-        if let Ok(values) = &values {
-            self.drop_leap(values[self.time]);
-        }
-        let last = self.log.values[self.time].last().copied();
-        let checked = values.and_then(|values| later(values[self.time], last).map(|()| values));
+    /// Adds the values of a row, or the reason of its rejection.
+    pub(super) fn push(&mut self, row: u64, values: Result<Vec<f64>, String>) {
+        let checked = values.and_then(|values| match values[self.time] {
+            time if time.abs() > NO_CLOCK => Err(format!("t is {time:e} s, which no clock shows")),
+            _ => Ok(values),
+        });
         match checked {
             Ok(values) => {
                 for (column, value) in self.log.values.iter_mut().zip(values) {
-                    column.push(*value);
+                    column.push(value);
                 }
                 self.log.rows.push(row);
             }
@@ -52,46 +49,32 @@ impl Rows {
         }
     }
 
-    /// Removes the last row if only its time leapt ahead.
-    fn drop_leap(&mut self, time: f64) {
-        let [.., before, last] = self.log.values[self.time][..] else { return };
-        if time <= before || time >= last || last - before < LEAP * (time - before) {
-            return;
-        }
-        for column in &mut self.log.values {
-            column.pop();
-        }
-        if let Some(row) = self.log.rows.pop() {
-            let reason = format!("the time leaps from {before} s to {last} s for one row");
-            self.log.rejected.push(Rejected { row, reason });
-        }
-    }
-
-    /// The log.
+    /// The log without rows whose time does not ascend.
     ///
     /// # Errors
     /// Fewer than [`MIN_ROWS`] usable rows.
     pub(super) fn finish(self) -> Result<Log, LogError> {
-        let usable = self.log.rows.len();
+        let Rows { mut log, time } = self;
+        let same = |a: usize, b: usize| log.values.iter().all(|column| column[a] == column[b]);
+        let why = disordered(&log.values[time], same);
+        let kept: Vec<usize> = (0..why.len()).filter(|row| why[*row].is_none()).collect();
+        if kept.len() < why.len() {
+            let lines = log.rows.iter().zip(why);
+            let of =
+                |(row, why): (&u64, Option<String>)| Some(Rejected { row: *row, reason: why? });
+            let rejected: Vec<Rejected> = lines.filter_map(of).collect();
+            log = log.of_rows(&kept);
+            log.rejected.extend(rejected);
+            log.rejected.sort_by_key(|rejected| rejected.row);
+        }
+        let usable = log.rows.len();
         if usable < MIN_ROWS {
-            let why = self.log.rejected.first().map_or_else(String::new, |first| {
-                let count = self.log.rejected.len();
+            let why = log.rejected.first().map_or_else(String::new, |first| {
+                let count = log.rejected.len();
                 format!("; {count} were left out, row {}: {}", first.row, first.reason)
             });
             return Err(LogError::Short { usable, needed: MIN_ROWS, why });
         }
-        Ok(self.log)
-    }
-}
-
-/// Whether the time ascends.
-fn later(time: f64, last: Option<f64>) -> Result<(), String> {
-    if time.abs() > NO_CLOCK {
-        return Err(format!("t is {time:e} s, which no clock shows"));
-    }
-    match last {
-        Some(last) if time == last => Err(format!("the time {time} s is there twice")),
-        Some(last) if time < last => Err(format!("the time goes back from {last} s to {time} s")),
-        _ => Ok(()),
+        Ok(log)
     }
 }

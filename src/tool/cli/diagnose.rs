@@ -173,6 +173,7 @@ fn run_diagnosis(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basi
     check_paths(args)?;
     let model = effects::load(&args.robot)?;
     ready(&model, Use::Predict)?;
+    common::notes(args.quiet, model.assumed());
     let map = ColumnMap::parse(&args.map)?;
     if let Some(period) = args.period.filter(|p| !(p.is_finite() && *p > 0.0)) {
         bail!("--period {period}: give the duration of a repetition in seconds, more than 0");

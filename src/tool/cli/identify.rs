@@ -129,6 +129,7 @@ pub(super) fn run(args: &IdentifyArgs) -> anyhow::Result<ExitCode> {
         logs.chain([Path::new(&args.robot)]),
     )?;
     let model = effects::load(&args.robot)?;
+    common::notes(args.quiet, model.assumed());
     let map = ColumnMap::parse(&args.map)?;
     if let Some(period) = args.period.filter(|period| !PERIODS.contains(period)) {
         bail!(

@@ -263,13 +263,30 @@ const OTHER_PERIOD: f64 = 0.01;
 /// Maximum number of rejected rows per reason that are listed individually.
 const MAX_LISTED_ROWS: usize = 3;
 
+/// The rejected rows, one text for consecutive rows with the same kind of reason.
+pub(super) fn left_out(mut rejected: Vec<Rejected>) -> Vec<String> {
+    rejected.sort_by_key(|of| of.row);
+    let follows =
+        |a: &Rejected, b: &Rejected| b.row == a.row + 1 && kind(&a.reason) == kind(&b.reason);
+    let text = |rows: &[Rejected]| match rows {
+        [of] => format!("row {} left out: {}", of.row, of.reason),
+        [first, .., last] => {
+            format!("rows {} to {} left out: {}", first.row, last.row, first.reason)
+        }
+        [] => String::new(),
+    };
+    rejected.chunk_by(follows).map(text).collect()
+}
+
+/// A reason without its numbers.
+fn kind(reason: &str) -> String {
+    let mark = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '+');
+    reason.split(' ').filter(|word| !word.contains(mark)).collect::<Vec<_>>().join(" ")
+}
+
 /// The rejected rows; for frequent reasons the first ones and the number of others.
 fn summed_up<'a>(rejected: impl Iterator<Item = &'a Rejected>) -> Vec<String> {
     // Reasons that differ only in numbers are of one kind.
-    let kind = |reason: &str| -> String {
-        let mark = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '+');
-        reason.split(' ').filter(|word| !word.contains(mark)).collect::<Vec<_>>().join(" ")
-    };
     let mut kinds: Vec<(String, u64, usize)> = Vec::new();
     let mut texts = Vec::new();
     for row in rejected {

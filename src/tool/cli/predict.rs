@@ -12,11 +12,12 @@ use anyhow::{Context, bail};
 use clap::Args;
 
 use self::doubts::doubts;
-use super::logs::check_joints;
+use super::logs::{check_joints, left_out};
 use super::{common, load, output};
 use crate::arm::dynamics::{Data, Load, apparent_torques};
 use crate::arm::effects;
 use crate::arm::robot::{Model, Provenance, Use, ready};
+use crate::learn::identify::plausible;
 use crate::learn::log::{self, ColumnMap, MIN_ROWS, Motion, Rejected};
 use crate::rapid::text::{FileId, SourceFile};
 use crate::retime::energy::power::{power_at, supply_w};
@@ -79,6 +80,7 @@ pub(super) fn run(args: &PredictArgs) -> anyhow::Result<ExitCode> {
     };
     let log = log::read(&bytes, &map).with_context(|| shown.clone())?;
     check_joints(&shown, &log, &model)?;
+    let (log, impossible) = plausible(&log);
     let motion = log.motion();
     if motion.time.len() < MIN_ROWS {
         bail!(
@@ -87,9 +89,12 @@ pub(super) fn run(args: &PredictArgs) -> anyhow::Result<ExitCode> {
             motion.time.len()
         );
     }
-    let rejected = log.rejected.iter().chain(&motion.left_out);
-    let left_out = |of: &Rejected| format!("{shown}: row {} left out: {}", of.row, of.reason);
-    common::notes(args.quiet, rejected.map(left_out));
+    let unused = [&log.rejected, &impossible, &motion.left_out].into_iter().flatten();
+    let notes = |rejected: Vec<Rejected>| {
+        let texts = left_out(rejected).into_iter().map(|text| format!("{shown}: {text}"));
+        common::notes(args.quiet, texts);
+    };
+    notes(unused.cloned().collect());
     if !motion.differentiated.is_empty() {
         let what = motion.differentiated.join(" and ");
         common::note(args.quiet, &format!("{shown}: {what} are not logged, but differentiated"));
@@ -110,8 +115,7 @@ pub(super) fn run(args: &PredictArgs) -> anyhow::Result<ExitCode> {
     if beyond.len() == motion.time.len() {
         bail!("{shown}: {NOT_FINITE} in every row; give positions in rad, rates in rad/s");
     }
-    let left_out = |row: u64| format!("{shown}: row {row} left out: {NOT_FINITE}");
-    common::notes(args.quiet, beyond.into_iter().map(left_out));
+    notes(beyond.into_iter().map(|row| Rejected { row, reason: NOT_FINITE.into() }).collect());
     match &args.out {
         Some(path) => output::write(path, csv.as_bytes())?,
         None => std::io::stdout().lock().write_all(csv.as_bytes())?,

@@ -3,11 +3,11 @@
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
+use super::bodies::Body;
 use super::chain::Chain;
 use super::document::Document;
 use super::elements::{Joint, Kind, Limit};
 use crate::arm::robot::error::RobotError;
-use crate::arm::robot::link::Link;
 use crate::arm::robot::toml_text::{list, pose, quoted};
 
 /// Range of a joint without limits \[rad\]: 100 turns to either side.
@@ -16,7 +16,7 @@ const CONTINUOUS: f64 = 100.0 * TAU;
 pub(super) fn toml(
     document: &Document,
     chain: &Chain<'_>,
-    links: &[Link],
+    bodies: &[Body],
 ) -> Result<String, RobotError> {
     let source = quoted(&document.file);
     let mut text =
@@ -28,7 +28,7 @@ pub(super) fn toml(
         let _ = writeln!(text, "{}axis = {}", pose(placement), list(&joint.axis));
     }
     limits(document, chain, &mut text)?;
-    for link in links {
+    for Body { link, changes } in bodies {
         let i = &link.inertia;
         let moments = [i.m11, i.m22, i.m33, i.m12, i.m13, i.m23];
         let _ = write!(
@@ -38,6 +38,10 @@ pub(super) fn toml(
             list(link.com.as_slice()),
             list(&moments)
         );
+        if !changes.is_empty() {
+            let source = quoted(&format!("{}: {}", document.file, changes.join("; ")));
+            let _ = writeln!(text, "inertia_source = {source}\ninertia_provenance = \"assumed\"");
+        }
     }
     friction(document, chain, &mut text)?;
     motors(document, chain, &mut text)?;

@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 use crate::arm::effects;
 use crate::arm::kinematics::{fk, ik_near, limits_ok, radical_inverse};
 use crate::arm::robot::{self, Lack, Model, Use, implausible, lacking};
-use crate::tool::cli::common::{Format, print};
+use crate::tool::cli::common::{Format, notes, print};
 
 /// Number of poses at which forward and inverse kinematics are compared.
 const POSES: u32 = 64;
@@ -33,7 +33,11 @@ pub(super) fn run(robots: &[String], format: Format) -> anyhow::Result<ExitCode>
     };
     let mut findings = Vec::with_capacity(names.len());
     for name in &names {
-        findings.push(checked(&effects::load(name)?, &effects::load_estimated(name)?));
+        let model = effects::load(name)?;
+        if !robots.is_empty() {
+            notes(false, model.assumed());
+        }
+        findings.push(checked(&model, &effects::load_estimated(name)?));
     }
     let passed = findings.iter().filter(|finding| finding.problems.is_empty()).count();
     let json = || {

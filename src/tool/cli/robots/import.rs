@@ -11,6 +11,7 @@ use clap::Args;
 use crate::arm::robot::{from_toml, import_moc, import_urdf};
 use crate::rapid::text;
 use crate::tool::cli::backup::motion_configuration;
+use crate::tool::cli::common::notes;
 use crate::tool::cli::output;
 
 /// What to import, and where to.
@@ -42,7 +43,8 @@ pub(super) fn run(args: &ImportArgs) -> anyhow::Result<ExitCode> {
         _ => bail!("'{shown}': give a file that ends in .urdf or .cfg, or a backup folder"),
     };
     // Checks that the output can be loaded.
-    from_toml(&shown, &imported)?;
+    let model = from_toml(&shown, &imported)?;
+    notes(false, model.assumed());
     match &args.out {
         Some(out) => output::write(out, imported.as_bytes())?,
         None => std::io::stdout().lock().write_all(imported.as_bytes())?,
