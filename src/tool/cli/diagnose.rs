@@ -1,6 +1,7 @@
 //! `joulepath diagnose`: which effect separates a model from its robot.
 
 mod channels;
+mod motion;
 mod pictures;
 
 use std::path::{Path, PathBuf};
@@ -26,6 +27,7 @@ use crate::learn::identify::{Hints, Samples};
 use crate::learn::log::{Channel, ColumnMap};
 use crate::tool::report::diagnose as report;
 use crate::tool::report::html::diagnose_report;
+use crate::tool::report::identify::LogRecord;
 
 /// Find where a model differs from logs of its robot, which effect explains it, and how far the gap
 /// shrinks.
@@ -184,7 +186,11 @@ fn run_diagnosis(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basi
         None if args.baseline.is_empty() => Trust::Cad,
         Some(TrustArg::Commissioned) | None => Trust::Commissioned,
     };
-    let Data { train, held, baseline, heldout, notes } = read_data(args, &model, &map, trust)?;
+    let raw = read_all(&args.log, &map, &model)?;
+    if motion::is_alone(&raw) {
+        return motion::diagnose(args, &model, &map, raw, &wanted);
+    }
+    let Data { train, held, baseline, heldout, notes } = read_data(args, &model, &map, raw, trust)?;
     // These notes were already shown during reading.
     let shown = notes.len();
     let mut basis = report::Basis {
@@ -194,16 +200,12 @@ fn run_diagnosis(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basi
         notes,
         ..report::Basis::default()
     };
-    let lines = match &args.program {
-        Some(program) => channels::lines(program, &args.robot)
-            .with_context(|| format!("--program {}", program.display()))?,
-        None => Vec::new(),
-    };
+    let lines = channels::lines(args.program.as_deref(), &args.robot)?;
     let may = |id: &str| wanted.iter().any(|effect| effect.id == id);
     let [before, now, graded] = [&baseline, &train, &held].map(|logs| channels::powers(logs));
     let of_power = diagnose_power(&model, &before, &now, &graded, &may);
     let [before, now, graded] = [&baseline, &train, &held].map(|logs| channels::runs(logs));
-    let of_runs = diagnose_runs(&model, &before, &now, &graded, &may);
+    let of_runs = diagnose_runs(&before, &now, &graded, &may);
     // Checks that the outputs are writable before the long search.
     for path in args.out.iter().chain(&args.report) {
         output::stage(path, &[])?;
@@ -224,11 +226,7 @@ fn run_diagnosis(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basi
         found.add_power(of);
     }
     if let Some(of) = &of_runs {
-        found.add_runs(of);
-        for place in &mut found.places {
-            let movement = place.movement.and_then(|movement| movement.checked_sub(1));
-            place.line = movement.and_then(|movement| lines.get(movement).cloned());
-        }
+        channels::add_runs(&mut found, of, &lines);
     } else if args.program.is_some() {
         basis.notes.push(
             "--program tells nothing of these logs: give logs and a --baseline whose column `cmd` has \
@@ -255,30 +253,22 @@ fn read_data(
     args: &DiagnoseArgs,
     model: &Model,
     map: &ColumnMap,
+    raw: Vec<RawLog>,
     trust: Trust,
 ) -> anyhow::Result<Data> {
     let mut reader = Reader { model, quiet: args.quiet, notes: Vec::new() };
-    let mut read = |paths: &[PathBuf]| -> anyhow::Result<Vec<PreparedLog>> {
+    let mut prepared = |raw: Vec<RawLog>| -> anyhow::Result<Vec<PreparedLog>> {
         let one = |read: RawLog| {
             // Repetitions of a program are never equal to the millisecond.
             let is_run = read.log.column(Channel::Command).is_some();
             let cutoff = is_run.then_some(RUN_CUTOFF_HZ);
             reader.prepared(read, Hints { period: args.period, cutoff })
         };
-        read_all(paths, map, model)?.into_iter().map(one).collect()
+        raw.into_iter().map(one).collect()
     };
-    let mut train = read(&args.log)?;
-    let mut held = read(&args.heldout)?;
-    for other in &held {
-        if let Some(same) = train.iter().find(|of| of.record.hash == other.record.hash) {
-            bail!(
-                "--heldout {}: the same log as --log {}; give one that takes no part there, or leave \
-                 --heldout out",
-                other.record.path,
-                same.record.path
-            );
-        }
-    }
+    let mut train = prepared(raw)?;
+    let mut held = prepared(read_all(&args.heldout, map, model)?)?;
+    refuse_same(train.iter().map(|of| &of.record), held.iter().map(|of| &of.record))?;
     let heldout = if !held.is_empty() {
         "file"
     } else if train.len() > 1 {
@@ -295,8 +285,26 @@ fn read_data(
              at the joints, currents as i1… in A, or the --robot that was logged"
         );
     }
-    let baseline = read(&args.baseline)?;
+    let baseline = prepared(read_all(&args.baseline, map, model)?)?;
     Ok(Data { train, held, baseline, heldout, notes: reader.notes })
+}
+
+/// Refuses a held-out log with the content of another one.
+fn refuse_same<'a>(
+    train: impl Iterator<Item = &'a LogRecord> + Clone,
+    mut held: impl Iterator<Item = &'a LogRecord>,
+) -> anyhow::Result<()> {
+    let same =
+        |held: &'a LogRecord| train.clone().find(|of| of.hash == held.hash).map(|of| (held, of));
+    if let Some((held, same)) = held.find_map(same) {
+        bail!(
+            "--heldout {}: the same log as --log {}; give one that takes no part there, or leave \
+             --heldout out",
+            held.path,
+            same.path
+        );
+    }
+    Ok(())
 }
 
 fn records<'a>(model: &'a Model, logs: &[PreparedLog]) -> Vec<Record<'a>> {
