@@ -101,12 +101,15 @@ fn landmarks(baseline: &[Run], step: f64) -> Vec<Landmarks> {
     let typical = |number: usize| {
         let mut all: Vec<(f64, usize, usize)> = Vec::new();
         for (log, (run, (_, spans))) in baseline.iter().zip(&logs).enumerate() {
-            for (k, span) in spans.iter().enumerate().filter(|(_, span)| span.number == number) {
-                let follows = spans.get(k + 1).is_some_and(|next| next.has_end);
-                if span.is_whole() && follows {
-                    all.push((run.start(span.to) - run.start(span.from), log, k));
-                }
+            let own = spans.iter().enumerate().filter(|(_, span)| span.number == number);
+            for (k, span) in own.filter(|(_, span)| span.is_whole()) {
+                all.push((run.start(span.to) - run.start(span.from), log, k));
             }
+        }
+        // Its corner shows where the next movement is there as a whole.
+        let follows = |log: usize, k: usize| logs[log].1.get(k + 1).is_some_and(Span::is_whole);
+        if all.iter().any(|(_, log, k)| follows(*log, *k)) {
+            all.retain(|(_, log, k)| follows(*log, *k));
         }
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (_, log, k) = *all.get(all.len() / 2)?;

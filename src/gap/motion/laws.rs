@@ -111,20 +111,26 @@ impl Law {
         let scale = 0.5 * self.value;
         let longer = movement.moving() * ((-scale).exp() - 1.0);
         let slower = Expected::exactly(scale, FORM);
-        let ramps = stretched(movement, longer, scale).with(Start, slower).with(End, slower);
         let partly = Expected::between(scale, 0.0);
-        if movement.landmarks.plateau > PEAK {
-            return self.drifting(&[ramps.weighing(1.0)], movement);
-        }
-        let scaled = ramps.with(Speed, slower).with(Duration, Expected::exactly(longer, FORM));
-        let less = stretched(movement, longer, scale).with(Start, partly).with(End, partly);
-        let modes = [
-            ramps.weighing(0.5),
-            scaled.weighing(0.3),
-            ramps.weighing(0.15).with(Speed, partly),
-            less.weighing(0.05).with(Speed, partly),
+        let timed = stretched(movement, longer, scale);
+        let ramps = [
+            timed.weighing(0.5).with(Start, slower).with(End, slower),
+            timed.weighing(0.3).with(Start, partly).with(End, partly),
+            timed.weighing(0.1).with(Start, slower),
+            timed.weighing(0.1).with(End, slower),
         ];
-        self.drifting(&modes, movement)
+        if movement.landmarks.plateau > PEAK {
+            return self.drifting(&ramps, movement);
+        }
+        let scaled = Expected::exactly(longer, FORM);
+        let modes = ramps.iter().flat_map(|ramp| {
+            [
+                ramp.weighing(0.5 * ramp.weight),
+                ramp.weighing(0.3 * ramp.weight).with(Speed, slower).with(Duration, scaled),
+                ramp.weighing(0.2 * ramp.weight).with(Speed, partly),
+            ]
+        });
+        self.drifting(&modes.collect::<Vec<Mode>>(), movement)
     }
 
     /// Plateaus are lower, ramps stay up to them; what has none is slower in all, what does not
@@ -138,15 +144,13 @@ impl Law {
         let rounded = ROUNDED * scale.abs();
         let same = Expected::between(beyond - rounded, rounded);
         let capped = stretched(movement, longer, scale).with(Start, same).with(End, same);
-        let mut modes = vec![
+        let scaled = stretched(movement, longer, scale).with(Speed, slower).with(Start, slower);
+        let scaled = scaled.with(End, slower).with(Duration, Expected::exactly(longer, FORM));
+        let modes = [
             capped.weighing(0.5).with(Speed, slower),
-            capped.weighing(0.2).with(Speed, Expected::between(scale, 0.0)),
+            capped.weighing(0.3).with(Speed, Expected::between(scale, 0.0)),
+            scaled.weighing(0.2),
         ];
-        if movement.landmarks.plateau <= PEAK {
-            let scaled = stretched(movement, longer, scale).with(Speed, slower).with(Start, slower);
-            let scaled = scaled.with(End, slower).with(Duration, Expected::exactly(longer, FORM));
-            modes.push(scaled.weighing(0.3));
-        }
         self.drifting(&modes, movement)
     }
 

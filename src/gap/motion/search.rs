@@ -7,8 +7,8 @@ use super::expected::{Mode, log_density, log_density_of_anything};
 use super::features::Feature;
 use super::laws::Law;
 
-/// Least parameters that matter: 2 ms, 1 % of a speed (2 % of an acceleration), 10 % of a zone.
-const LEAST_LAG: f64 = 0.002;
+/// Least parameters that matter: 3 ms, 10 ms, 1 % of a speed (2 % of an acceleration), 10 % of a zone.
+const LEAST_LAG: f64 = 0.003;
 const LEAST_WAIT: f64 = 0.01;
 const LEAST_SCALE: f64 = 0.02;
 const LEAST_ZONE: f64 = 0.1;
@@ -79,8 +79,11 @@ pub(super) fn search(movements: &[Movement], timings: &[Timing]) -> Searched {
 
 /// Some laws and the best one of a kind beside them.
 fn with(movements: &[Movement], before: &Explained, timing: Timing) -> Option<Explained> {
-    let is_there = |law: &Law| law.timing == timing && law.at.is_none();
-    if before.laws.iter().any(is_there) {
+    // What two limits do together one of them may do in another form.
+    let is_there = |law: &Law| law.timing == timing && timing != Timing::Wait;
+    let is_limit = |timing: Timing| !matches!(timing, Timing::Lag | Timing::Wait);
+    let is_form = |law: &Law| is_limit(timing) && is_limit(law.timing);
+    if before.laws.iter().any(|law| is_there(law) || is_form(law)) {
         return None;
     }
     let starts = candidates(movements, timing);
