@@ -3,9 +3,9 @@
 use super::changes::Change;
 use super::features::Feature;
 
-/// Deviations by which a healthy robot repeats itself another day, by feature and in its unit: 2 ms of
-/// a duration, 3 ms of a rest, 0.5 % of a speed, 1 % in a ramp, 1 ms of a shift, 0.5 mrad at a corner.
-/// Chosen on logs of simulated robots, whose repetitions differ by about half of that.
+/// Deviations by which a healthy robot repeats itself another day, by feature and in its unit: 2 ms
+/// of a duration, 3 ms of a rest, 0.5 % of a speed, 1 % in a ramp, 1 ms of a shift, 0.5 mrad at a
+/// corner. Chosen on logs of simulated robots, whose repetitions differ by about half of that.
 const HEALTHY: [f64; Feature::COUNT] = [0.002, 0.003, 0.005, 0.01, 0.01, 0.001, 0.0005];
 /// Widest differences, by feature and in its unit: what any controller may do.
 const WIDEST: [f64; Feature::COUNT] = [2.0, 2.0, 2.0, 2.0, 2.0, 0.5, 0.5];

@@ -17,6 +17,12 @@ pub(super) struct Law {
     pub reach: f64,
 }
 
+/// How probable the usual form of a law is, another one and a rare one \[1\].
+const USUAL: f64 = 0.5;
+const OTHER: f64 = 0.3;
+const RARE: f64 = 0.2;
+/// The same of two forms of which neither is more usual.
+const EITHER: f64 = 0.5;
 /// How exactly a law says what it says \[1\]: controllers have other forms of it.
 const FORM: f64 = 0.03;
 /// The same of the distance from a corner, which is not measured from a target.
@@ -31,13 +37,19 @@ const DRIFT: f64 = 0.005;
 const SETTLED: f64 = 6.0;
 /// The time of a ramp \[s\]: a filter of that time takes its speed away.
 const RAMP: f64 = 0.15;
+/// What a filter of second order gains of what it takes \[1\].
+const OVERSHOOT: f64 = 0.25;
 /// Share of the way of a movement without a plateau on which its speed is near its highest, at most
 /// \[1\]: that between two corners of a movement of fifth order.
 const PEAK: f64 = 0.75;
 /// Share of a change of speed that a smoothed ramp may show \[1\].
 const ROUNDED: f64 = 0.15;
-/// Logarithm of a speed by which a filter changes a movement at most \[1\].
-const FILTERED: f64 = 0.5;
+/// Logarithm of a speed by which other corners change a short movement at most \[1\].
+const CORNERED: f64 = 0.5;
+/// Shares of a change of a duration by which the two halves of a movement may differ: from rest to
+/// rest, and beside a corner \[1\].
+const ALIKE: f64 = 0.02;
+const UNLIKE: f64 = 0.2;
 
 impl Law {
     /// How it may change movement `k` of some.
@@ -64,15 +76,15 @@ impl Law {
     /// All movements are later by the same time. A filter also rounds ramps and corners.
     fn lag(&self, movement: &Movement) -> Vec<Mode> {
         let lag = self.value;
-        let late = Mode::unchanged(0.5).with(Shift, Expected::exactly(lag, FORM));
+        let late = Mode::unchanged(USUAL).with(Shift, Expected::exactly(lag, FORM));
         let speed = movement.before.mean(Speed).map_or(0.0, f64::exp);
-        let slower = Expected::between(-lag / RAMP, 0.25 * lag / RAMP);
+        let slower = Expected::between(-lag / RAMP, OVERSHOOT * lag / RAMP);
         let filtered = late
             .with(Rest, Expected::between(-SETTLED * lag, lag))
             .with(Start, slower)
             .with(End, slower)
-            .with(Corner, Expected::between(-0.25 * speed * lag, speed * lag));
-        vec![late, filtered.weighing(0.3), filtered.weighing(0.2).with(Speed, slower)]
+            .with(Corner, Expected::between(-OVERSHOOT * speed * lag, speed * lag));
+        vec![late, filtered.weighing(OTHER), filtered.weighing(RARE).with(Speed, slower)]
     }
 
     /// One movement ends later. Where none of the baseline ended the robot may also have to stop.
@@ -89,15 +101,15 @@ impl Law {
             let cut = movement.before.mean(Corner).unwrap_or(0.0);
             let stopped = later.with(Rest, Expected::between(wait - ENDS, wait + ENDS));
             vec![
-                stopped.weighing(0.5).with(Duration, waited),
+                stopped.weighing(EITHER).with(Duration, waited),
                 stopped
-                    .weighing(0.5)
+                    .weighing(EITHER)
                     .with(Duration, Expected::between(wait, wait + STOP))
                     .with(Shift, Expected::between(-0.5 * wait, -0.5 * (wait + STOP)))
                     .with(Corner, Expected::within(cut)),
             ]
         } else if was_fly_by && movements[at].landmarks.next == Some(movement.landmarks.number) {
-            let started = Mode::unchanged(0.5);
+            let started = Mode::unchanged(EITHER);
             let stop = Expected::within(STOP);
             vec![started, started.with(Duration, stop).with(Shift, stop)]
         } else {
@@ -114,10 +126,10 @@ impl Law {
         let partly = Expected::between(scale, 0.0);
         let timed = stretched(movement, longer, scale);
         let ramps = [
-            timed.weighing(0.5).with(Start, slower).with(End, slower),
-            timed.weighing(0.3).with(Start, partly).with(End, partly),
-            timed.weighing(0.1).with(Start, slower),
-            timed.weighing(0.1).with(End, slower),
+            timed.weighing(USUAL).with(Start, slower).with(End, slower),
+            timed.weighing(OTHER).with(Start, partly).with(End, partly),
+            timed.weighing(EITHER * RARE).with(Start, slower),
+            timed.weighing(EITHER * RARE).with(End, slower),
         ];
         if movement.landmarks.plateau > PEAK {
             return self.drifting(&ramps, movement);
@@ -125,9 +137,9 @@ impl Law {
         let scaled = Expected::exactly(longer, FORM);
         let modes = ramps.iter().flat_map(|ramp| {
             [
-                ramp.weighing(0.5 * ramp.weight),
-                ramp.weighing(0.3 * ramp.weight).with(Speed, slower).with(Duration, scaled),
-                ramp.weighing(0.2 * ramp.weight).with(Speed, partly),
+                ramp.weighing(USUAL * ramp.weight),
+                ramp.weighing(OTHER * ramp.weight).with(Speed, slower).with(Duration, scaled),
+                ramp.weighing(RARE * ramp.weight).with(Speed, partly),
             ]
         });
         self.drifting(&modes.collect::<Vec<Mode>>(), movement)
@@ -147,9 +159,9 @@ impl Law {
         let scaled = stretched(movement, longer, scale).with(Speed, slower).with(Start, slower);
         let scaled = scaled.with(End, slower).with(Duration, Expected::exactly(longer, FORM));
         let modes = [
-            capped.weighing(0.5).with(Speed, slower),
-            capped.weighing(0.3).with(Speed, Expected::between(scale, 0.0)),
-            scaled.weighing(0.2),
+            capped.weighing(USUAL).with(Speed, slower),
+            capped.weighing(OTHER).with(Speed, Expected::between(scale, 0.0)),
+            scaled.weighing(RARE),
         ];
         self.drifting(&modes, movement)
     }
@@ -170,9 +182,9 @@ impl Law {
         let turned = if to { timed.with(Rest, Expected::within(ENDS)) } else { timed };
         let near = Expected::between(0.0, cut);
         let modes = [
-            turned.weighing(0.6).with(Corner, Expected::exactly(cut, CORNER_FORM)),
-            turned.weighing(0.25).with(Corner, near),
-            turned.weighing(0.15).with(Corner, near).with(Speed, Expected::within(FILTERED)),
+            turned.weighing(USUAL).with(Corner, Expected::exactly(cut, CORNER_FORM)),
+            turned.weighing(OTHER).with(Corner, near),
+            turned.weighing(RARE).with(Corner, near).with(Speed, Expected::within(CORNERED)),
         ];
         self.reaching(&modes)
     }
@@ -194,12 +206,10 @@ impl Law {
     }
 }
 
-/// A movement that takes up to some time longer, as the logarithm of a speed falls by `scale`. From
-/// rest to rest it is alike at both ends.
+/// A movement that takes up to some time longer, as the logarithm of a speed falls by `scale`.
 fn stretched(movement: &Movement, longer: f64, scale: f64) -> Mode {
     let ends = ENDS * ((-scale).exp() - 1.0);
-    let alike = movement.starts() && movement.stops();
-    let shifted = if alike { 0.02 } else { 0.2 };
+    let shifted = if movement.starts() && movement.stops() { ALIKE } else { UNLIKE };
     Mode::unchanged(1.0)
         .with(Duration, Expected::between(0.0, longer))
         .with(Shift, Expected::within(shifted * longer))

@@ -53,7 +53,7 @@ impl Run {
         spans
     }
 
-    /// When the movement in whose first row this is began \[s\]: between that row and the one before.
+    /// When the movement with this first row began \[s\]: between that row and the one before.
     pub(super) fn start(&self, row: usize) -> f64 {
         0.5 * (self.t[row] + self.t[row.saturating_sub(1)])
     }

@@ -7,7 +7,7 @@ use super::expected::{Mode, log_density, log_density_of_anything};
 use super::features::Feature;
 use super::laws::Law;
 
-/// Least parameters that matter: 3 ms, 10 ms, 1 % of a speed (2 % of an acceleration), 10 % of a zone.
+/// Least parameters that matter: 3 ms, 10 ms, 2 % of a speed or an acceleration, 10 % of a zone.
 const LEAST_LAG: f64 = 0.003;
 const LEAST_WAIT: f64 = 0.01;
 const LEAST_SCALE: f64 = 0.02;
@@ -139,7 +139,11 @@ fn candidates(movements: &[Movement], timing: Timing) -> Vec<Law> {
         let cut = movement.before.mean(Feature::Corner);
         let (at, values) = match timing {
             Timing::Lag => (None, vec![of(Feature::Shift)]),
-            Timing::Wait => (Some(k), vec![of(Feature::Duration)]),
+            Timing::Wait => {
+                // A robot cannot rest less than not at all.
+                let rest = movement.before.mean(Feature::Rest).unwrap_or(0.0);
+                (Some(k), vec![of(Feature::Duration).filter(|wait| *wait > -rest)])
+            }
             Timing::Speed => (None, vec![of(Feature::Speed)]),
             Timing::Acceleration => {
                 let all = [Feature::Start, Feature::End, Feature::Speed];

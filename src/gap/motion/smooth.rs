@@ -41,8 +41,8 @@ pub(super) struct Smooth {
 }
 
 impl Smooth {
-    /// The motion of a log whose rows are at most `step` \[s\] apart, as that of the logs that it is
-    /// compared with.
+    /// The motion of a log, smoothed as that of the logs that it is compared with, whose rows are at
+    /// most `step` \[s\] apart.
     pub(super) fn of(run: &Run, step: f64) -> Smooth {
         let half = HALF.max(LEAST_ROWS * step) * (1.0 + f64::EPSILON);
         let (mut from, mut to) = (0, 0);

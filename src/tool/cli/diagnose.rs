@@ -15,7 +15,7 @@ use serde_json::Value;
 
 use super::common::{self, Format};
 use super::input::{self, Input};
-use super::logs::{PreparedLog, RawLog, Reader, held_out, read_all};
+use super::logs::{PreparedLog, RawLog, Reader, held_out, read_all, refuse_same};
 use super::output::{self, is_same_file};
 use crate::arm::effects::{self, ALL, Effect};
 use crate::arm::robot::{Model, Use, nearest, ready, to_toml};
@@ -27,7 +27,6 @@ use crate::learn::identify::{Hints, Samples};
 use crate::learn::log::{Channel, ColumnMap};
 use crate::tool::report::diagnose as report;
 use crate::tool::report::html::diagnose_report;
-use crate::tool::report::identify::LogRecord;
 
 /// Find where a model differs from logs of its robot, which effect explains it, and how far the gap
 /// shrinks.
@@ -188,7 +187,7 @@ fn run_diagnosis(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basi
     };
     let raw = read_all(&args.log, &map, &model)?;
     if motion::is_alone(&raw) {
-        return motion::diagnose(args, &model, &map, raw, &wanted);
+        return diagnose_motion(args, &model, &map, raw, &wanted);
     }
     let Data { train, held, baseline, heldout, notes } = read_data(args, &model, &map, raw, trust)?;
     // These notes were already shown during reading.
@@ -240,6 +239,54 @@ fn run_diagnosis(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basi
     Ok((found, basis))
 }
 
+/// The motion alone of logs without torques.
+fn diagnose_motion(
+    args: &DiagnoseArgs,
+    model: &Model,
+    map: &ColumnMap,
+    raw: Vec<RawLog>,
+    wanted: &[&'static Effect],
+) -> anyhow::Result<(Diagnosis, report::Basis)> {
+    let shown = args.log[0].display();
+    if args.baseline.is_empty() {
+        bail!(
+            "--log {shown}: no torques are logged, and a motion alone is compared with that of a \
+             baseline; give --baseline with a log of the same program from when the robot was right, \
+             or logs with tau1… or i1…"
+        );
+    }
+    let mut reader = Reader { model, quiet: args.quiet, notes: Vec::new() };
+    let logs = [raw, read_all(&args.heldout, map, model)?, read_all(&args.baseline, map, model)?];
+    let motion::Logged { now, held, before, heldout, graded } = motion::logged(&mut reader, logs)?;
+    let lines = channels::lines(args.program.as_deref(), &args.robot)?;
+    for path in args.out.iter().chain(&args.report) {
+        output::stage(path, &[])?;
+    }
+    let may = |id: &str| wanted.iter().any(|effect| effect.id == id);
+    let of_runs = diagnose_runs(&before, &now, &held, &may).with_context(|| {
+        format!(
+            "--log {shown}: its movements are not those of the baseline; give logs in which the same \
+             program runs at least twice, with the number of the movement as cmd"
+        )
+    })?;
+    let mut found = Diagnosis::without_torques(model);
+    channels::add_runs(&mut found, &of_runs, &lines);
+    let mut basis = report::Basis {
+        robot: args.robot.clone(),
+        heldout: heldout.to_owned(),
+        graded,
+        notes: reader.notes,
+        ..report::Basis::default()
+    };
+    common::note_once(
+        args.quiet,
+        &mut basis.notes,
+        "no torques are logged: only the motion was compared".to_owned(),
+    );
+    write(args, model, &[], &found, &mut basis)?;
+    Ok((found, basis))
+}
+
 struct Data {
     train: Vec<PreparedLog>,
     held: Vec<PreparedLog>,
@@ -287,24 +334,6 @@ fn read_data(
     }
     let baseline = prepared(read_all(&args.baseline, map, model)?)?;
     Ok(Data { train, held, baseline, heldout, notes: reader.notes })
-}
-
-/// Refuses a held-out log with the content of another one.
-fn refuse_same<'a>(
-    train: impl Iterator<Item = &'a LogRecord> + Clone,
-    mut held: impl Iterator<Item = &'a LogRecord>,
-) -> anyhow::Result<()> {
-    let same =
-        |held: &'a LogRecord| train.clone().find(|of| of.hash == held.hash).map(|of| (held, of));
-    if let Some((held, same)) = held.find_map(same) {
-        bail!(
-            "--heldout {}: the same log as --log {}; give one that takes no part there, or leave \
-             --heldout out",
-            held.path,
-            same.path
-        );
-    }
-    Ok(())
 }
 
 fn records<'a>(model: &'a Model, logs: &[PreparedLog]) -> Vec<Record<'a>> {

@@ -146,6 +146,27 @@ pub(super) fn check_joints(shown: &str, log: &Log, model: &Model) -> anyhow::Res
     Ok(())
 }
 
+/// Refuses a held-out log with the content of another one.
+///
+/// # Errors
+/// There is one.
+pub(super) fn refuse_same<'a>(
+    train: impl Iterator<Item = &'a LogRecord> + Clone,
+    mut held: impl Iterator<Item = &'a LogRecord>,
+) -> anyhow::Result<()> {
+    let same =
+        |held: &'a LogRecord| train.clone().find(|of| of.hash == held.hash).map(|of| (held, of));
+    if let Some((held, same)) = held.find_map(same) {
+        bail!(
+            "--heldout {}: the same log as --log {}; give one that takes no part there, or leave \
+             --heldout out",
+            held.path,
+            same.path
+        );
+    }
+    Ok(())
+}
+
 /// Splits a log into training and held-out part: the last repetitions, or the last part of the
 /// whole.
 ///

@@ -1,16 +1,27 @@
-//! Logs without torques: the motion channel alone.
+//! Logs without torques: the motion of a program alone.
 
-use anyhow::{Context, bail};
+use std::ops::Range;
 
-use super::super::common;
-use super::super::logs::{CheckedLog, HELD_OUT, RawLog, Reader, read_all};
-use super::super::output;
-use super::channels::{self, add_runs};
-use super::{DiagnoseArgs, refuse_same, report, write};
-use crate::arm::effects::Effect;
-use crate::arm::robot::Model;
-use crate::gap::{Diagnosis, Run, diagnose_runs};
-use crate::learn::log::{Channel, ColumnMap};
+use anyhow::bail;
+
+use super::super::logs::{CheckedLog, HELD_OUT, RawLog, Reader, refuse_same};
+use super::channels::run;
+use crate::gap::Run;
+use crate::learn::log::Channel;
+
+/// Runs to be compared.
+pub(super) struct Logged {
+    /// Those of the robot as it is now.
+    pub(super) now: Vec<Run>,
+    /// Those that only grade.
+    pub(super) held: Vec<Run>,
+    /// Those of the baseline.
+    pub(super) before: Vec<Run>,
+    /// The kind of held-out data: `file`, `trajectory` or `cycles`.
+    pub(super) heldout: &'static str,
+    /// Paths of the held-out logs.
+    pub(super) graded: Vec<String>,
+}
 
 /// Whether logs tell nothing but the motion of a program.
 pub(super) fn is_alone(logs: &[RawLog]) -> bool {
@@ -21,36 +32,21 @@ pub(super) fn is_alone(logs: &[RawLog]) -> bool {
     })
 }
 
-/// Compares the motion of logs with that of a baseline.
+/// The runs in the logs of the robot as it is now, the held-out ones and those of the baseline.
+/// Without held-out logs, the last log or the last part of a single one is held out.
 ///
 /// # Errors
-/// There is no baseline, a log does not mark its movements, or they share none.
-pub(super) fn diagnose(
-    args: &DiagnoseArgs,
-    model: &Model,
-    map: &ColumnMap,
-    raw: Vec<RawLog>,
-    wanted: &[&'static Effect],
-) -> anyhow::Result<(Diagnosis, report::Basis)> {
-    if args.baseline.is_empty() {
-        bail!(
-            "--log {}: no torques are logged, and a motion alone is compared with that of a baseline; \
-             give --baseline with a log of the same program from when the robot was right, or logs with \
-             tau1… or i1…",
-            args.log[0].display()
-        );
-    }
-    let mut reader = Reader { model, quiet: args.quiet, notes: Vec::new() };
-    let mut read = |raw: Vec<RawLog>| -> anyhow::Result<Vec<(CheckedLog, Run)>> {
+/// A log does not mark its movements, or is given in two roles.
+pub(super) fn logged(reader: &mut Reader<'_>, logs: [Vec<RawLog>; 3]) -> anyhow::Result<Logged> {
+    let mut marked = |raw: Vec<RawLog>| -> anyhow::Result<Vec<(CheckedLog, Run)>> {
         raw.into_iter().map(|read| marked(reader.checked(read)?)).collect()
     };
-    let mut train = read(raw)?;
-    let mut held = read(read_all(&args.heldout, map, model)?)?;
-    let baseline = read(read_all(&args.baseline, map, model)?)?;
-    let records = |logs: &[(CheckedLog, Run)]| -> Vec<_> {
-        logs.iter().map(|(of, _)| of.record.clone()).collect()
-    };
-    refuse_same(records(&train).iter(), records(&held).iter())?;
+    let [train, held, baseline] = logs;
+    let (mut train, mut held, baseline) = (marked(train)?, marked(held)?, marked(baseline)?);
+    let record = |(of, _): &'_ (CheckedLog, Run)| of.record.clone();
+    let records: Vec<_> = train.iter().map(record).collect();
+    let others: Vec<_> = held.iter().map(record).collect();
+    refuse_same(records.iter(), others.iter())?;
     let heldout = if !held.is_empty() {
         "file"
     } else if train.len() > 1 {
@@ -59,60 +55,36 @@ pub(super) fn diagnose(
     } else {
         "cycles"
     };
-    let graded = if held.is_empty() { records(&train) } else { records(&held) };
-    let [before, mut now, mut held]: [Vec<Run>; 3] =
-        [baseline, train, held].map(|logs| logs.into_iter().map(|(_, run)| run).collect());
+    let graded = if held.is_empty() { &train } else { &held };
+    let graded = graded.iter().map(|(of, _)| of.record.path.clone()).collect();
+    let [mut now, mut held, before]: [Vec<Run>; 3] =
+        [train, held, baseline].map(|logs| logs.into_iter().map(|(_, run)| run).collect());
     if heldout == "cycles" {
-        (now, held) = halves(&now);
+        (now, held) = now.iter().map(parts).unzip();
     }
-    let lines = channels::lines(args.program.as_deref(), &args.robot)?;
-    // Checks that the outputs are writable before the search.
-    for path in args.out.iter().chain(&args.report) {
-        output::stage(path, &[])?;
-    }
-    let may = |id: &str| wanted.iter().any(|effect| effect.id == id);
-    let of_runs = diagnose_runs(&before, &now, &held, &may).with_context(|| {
-        format!(
-            "--log {}: its movements are not those of the baseline; give logs in which the same program \
-             runs at least twice, with the number of the movement as cmd",
-            args.log[0].display()
-        )
-    })?;
-    let mut found = Diagnosis::without_torques(model);
-    add_runs(&mut found, &of_runs, &lines);
-    let mut basis = report::Basis {
-        robot: args.robot.clone(),
-        heldout: heldout.to_owned(),
-        graded: graded.into_iter().map(|of| of.path).collect(),
-        notes: reader.notes,
-        ..report::Basis::default()
-    };
-    let shown = basis.notes.len();
-    basis.notes.push("no torques are logged: only the motion was compared".to_owned());
-    write(args, model, &[], &found, &mut basis)?;
-    common::notes(args.quiet, &basis.notes[shown..]);
-    Ok((found, basis))
+    Ok(Logged { now, held, before, heldout, graded })
 }
 
 /// A log with the movements that it marks.
 fn marked(log: CheckedLog) -> anyhow::Result<(CheckedLog, Run)> {
-    let Some(run) = channels::run(&log.log) else {
+    let Some(run) = run(&log.log) else {
         bail!(
-            "{}: no column cmd: log the number of the movement that runs, from 1 in each cycle and 0 for \
-             none, or say by --map cmd=COLUMN which one it is",
+            "{}: no column cmd: log the number of the movement that runs, from 1 in each cycle and 0 \
+             for none, or say by --map cmd=COLUMN which one it is",
             log.record.path
         );
     };
     Ok((log, run))
 }
 
-/// The first part of each run, and the last one.
-fn halves(runs: &[Run]) -> (Vec<Run>, Vec<Run>) {
-    let part = |run: &Run, rows: std::ops::Range<usize>| Run {
+/// The first part of a run, and the last one.
+fn parts(run: &Run) -> (Run, Run) {
+    let rows = run.t.len();
+    let at = ((1.0 - HELD_OUT) * rows as f64) as usize;
+    let part = |rows: Range<usize>| Run {
         t: run.t[rows.clone()].to_vec(),
         q: run.q.iter().map(|q| q[rows.clone()].to_vec()).collect(),
         command: run.command[rows].to_vec(),
     };
-    let at = |run: &Run| ((1.0 - HELD_OUT) * run.t.len() as f64) as usize;
-    runs.iter().map(|run| (part(run, 0..at(run)), part(run, at(run)..run.t.len()))).unzip()
+    (part(0..at), part(at..rows))
 }
