@@ -31,8 +31,10 @@ const CORNER_FORM: f64 = 0.2;
 const STOP: f64 = 0.3;
 /// Time of the slow ends of a movement \[s\].
 const ENDS: f64 = 0.1;
-/// How far a corner may move where the speed changes: as far as it is cut, and this \[rad\].
-const DRIFT: f64 = 0.005;
+/// How far a corner may move where the logarithm of a speed changes: by this power of the speed, as
+/// blending may go by the time and by its square, and by some mrad \[rad\].
+const TURNED: f64 = 4.0;
+const DRIFT: f64 = 0.002;
 /// Time constants after which a servo has come to rest.
 const SETTLED: f64 = 6.0;
 /// The time of a ramp \[s\]: a filter of that time takes its speed away.
@@ -132,7 +134,7 @@ impl Law {
             timed.weighing(EITHER * RARE).with(End, slower),
         ];
         if movement.landmarks.plateau > PEAK {
-            return self.drifting(&ramps, movement);
+            return self.drifting(&ramps, movement, scale);
         }
         let scaled = Expected::exactly(longer, FORM);
         let modes = ramps.iter().flat_map(|ramp| {
@@ -142,7 +144,7 @@ impl Law {
                 ramp.weighing(RARE * ramp.weight).with(Speed, partly),
             ]
         });
-        self.drifting(&modes.collect::<Vec<Mode>>(), movement)
+        self.drifting(&modes.collect::<Vec<Mode>>(), movement, scale)
     }
 
     /// Plateaus are lower, ramps stay up to them; what has none is slower in all, what does not
@@ -163,7 +165,7 @@ impl Law {
             capped.weighing(OTHER).with(Speed, Expected::between(scale, 0.0)),
             scaled.weighing(RARE),
         ];
-        self.drifting(&modes, movement)
+        self.drifting(&modes, movement, scale)
     }
 
     /// Corners are cut more or less between targets that are no stop points; the rest of the motion
@@ -198,9 +200,9 @@ impl Law {
     }
 
     /// The same of a change of speed, where corners stay as they were or move a little.
-    fn drifting(&self, modes: &[Mode], movement: &Movement) -> Vec<Mode> {
+    fn drifting(&self, modes: &[Mode], movement: &Movement, scale: f64) -> Vec<Mode> {
         let cut = movement.before.mean(Corner).unwrap_or(0.0);
-        let corner = Expected::within(cut + DRIFT);
+        let corner = Expected::within(DRIFT + cut * (1.0 - (-TURNED * scale.abs()).exp()));
         let both = modes.iter().flat_map(|mode| [*mode, mode.with(Corner, corner)]);
         self.reaching(&both.collect::<Vec<Mode>>())
     }

@@ -315,7 +315,9 @@ fn read_data(
     };
     let mut train = prepared(raw)?;
     let mut held = prepared(read_all(&args.heldout, map, model)?)?;
-    refuse_same(train.iter().map(|of| &of.record), held.iter().map(|of| &of.record))?;
+    let [now, others] =
+        [&train, &held].map(|logs| logs.iter().map(|of| &of.record).collect::<Vec<_>>());
+    refuse_same(&now, &others)?;
     let heldout = if !held.is_empty() {
         "file"
     } else if train.len() > 1 {

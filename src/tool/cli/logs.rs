@@ -150,13 +150,10 @@ pub(super) fn check_joints(shown: &str, log: &Log, model: &Model) -> anyhow::Res
 ///
 /// # Errors
 /// There is one.
-pub(super) fn refuse_same<'a>(
-    train: impl Iterator<Item = &'a LogRecord> + Clone,
-    mut held: impl Iterator<Item = &'a LogRecord>,
-) -> anyhow::Result<()> {
-    let same =
-        |held: &'a LogRecord| train.clone().find(|of| of.hash == held.hash).map(|of| (held, of));
-    if let Some((held, same)) = held.find_map(same) {
+pub(super) fn refuse_same(train: &[&LogRecord], held: &[&LogRecord]) -> anyhow::Result<()> {
+    let pairs = held.iter().flat_map(|held| train.iter().map(move |of| (held, of)));
+    let mut same = pairs.filter(|(held, of)| held.hash == of.hash);
+    if let Some((held, same)) = same.next() {
         bail!(
             "--heldout {}: the same log as --log {}; give one that takes no part there, or leave \
              --heldout out",

@@ -43,10 +43,9 @@ pub(super) fn logged(reader: &mut Reader<'_>, logs: [Vec<RawLog>; 3]) -> anyhow:
     };
     let [train, held, baseline] = logs;
     let (mut train, mut held, baseline) = (marked(train)?, marked(held)?, marked(baseline)?);
-    let record = |(of, _): &'_ (CheckedLog, Run)| of.record.clone();
-    let records: Vec<_> = train.iter().map(record).collect();
-    let others: Vec<_> = held.iter().map(record).collect();
-    refuse_same(records.iter(), others.iter())?;
+    let [now, others] =
+        [&train, &held].map(|logs| logs.iter().map(|(of, _)| &of.record).collect::<Vec<_>>());
+    refuse_same(&now, &others)?;
     let heldout = if !held.is_empty() {
         "file"
     } else if train.len() > 1 {
