@@ -2,7 +2,7 @@
 
 use super::landmarks::{Landmarks, Point};
 use super::run::{Run, Span};
-use super::smooth::Smooth;
+use super::smooth::{Passage, Smooth};
 
 /// A measured quantity of a movement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,17 +84,18 @@ pub(super) fn measured(of: &[Landmarks], runs: &[Run], step: f64) -> Vec<Measure
         let motion = Smooth::of(run, step);
         let spans = run.spans();
         let known = |span: &Span| of.iter().position(|of| of.number == span.number);
-        let middles: Vec<Option<(usize, f64)>> = spans
+        let middles: Vec<Option<Passage>> = spans
             .iter()
             .map(|span| known(span).and_then(|k| passed(&motion, span, &of[k])))
             .collect();
+        let row = |k: usize| middles.get(k)?.map(|passage| passage.row);
         for (k, span) in spans.iter().enumerate() {
             let Some(at) = known(span) else { continue };
-            let next = spans.get(k + 1).filter(|next| of[at].next == Some(next.number));
+            let follows = spans.get(k + 1).is_some_and(|next| of[at].next == Some(next.number));
             let around = Around {
-                before: k.checked_sub(1).and_then(|k| middles[k]).map_or(span.from, |of| of.0),
+                before: k.checked_sub(1).and_then(row).unwrap_or(span.from),
                 middle: middles[k],
-                after: next.and_then(|_| middles[k + 1]).map(|of| of.0),
+                after: row(k + 1).filter(|_| follows),
             };
             measure(&mut all[at], &of[at], &Seen { run, motion: &motion }, span, &around);
         }
@@ -108,27 +109,19 @@ struct Seen<'a> {
     motion: &'a Smooth,
 }
 
-/// Rows of the middles of a movement and those beside it, and the time of its own.
+/// Where the robot passes the middle of a movement, and rows of the middles beside it.
 struct Around {
     before: usize,
-    middle: Option<(usize, f64)>,
+    middle: Option<Passage>,
     after: Option<usize>,
 }
 
-impl Around {
-    /// The row up to which a movement may be under way.
-    fn beyond(&self, span: &Span) -> usize {
-        self.after.unwrap_or(span.to)
-    }
-}
-
-/// Row and time at which the robot passes the middle of a movement.
-fn passed(motion: &Smooth, span: &Span, of: &Landmarks) -> Option<(usize, f64)> {
+/// Where the robot passes the middle of a movement.
+fn passed(motion: &Smooth, span: &Span, of: &Landmarks) -> Option<Passage> {
     let point = of.middle.as_ref()?;
     let late = (LATE * (span.to - span.from) as f64) as usize;
     let passage = motion.nearest(span.from, span.to + late, point)?;
-    let is_there = passage.instant.distance(point) < ASTRAY * of.way;
-    is_there.then_some((passage.row, passage.instant.t))
+    (passage.instant.distance(point) < ASTRAY * of.way).then_some(passage)
 }
 
 /// Adds what a log shows of a movement once.
@@ -136,17 +129,20 @@ fn measure(into: &mut Measured, of: &Landmarks, log: &Seen<'_>, span: &Span, aro
     let Seen { run, motion } = log;
     let times = span.is_whole().then(|| [span.from, span.to].map(|row| run.start(row)));
     into.add(Feature::Duration, times.map(|[from, to]| to - from));
-    let Some((middle, t)) = around.middle else { return };
-    into.add(Feature::Shift, times.map(|[from, to]| t - 0.5 * (from + to)));
+    let Some(middle) = around.middle else { return };
+    into.add(Feature::Shift, times.map(|[from, to]| middle.instant.t - 0.5 * (from + to)));
+    into.add(Feature::Speed, Some(middle.instant.speed.ln()));
+    // On the way back the robot passes a ramp again.
+    let rows = around.before..around.after.unwrap_or(span.to);
+    let moving = motion.moving(rows, middle.row, of.rest);
     let speed = |from: usize, to: usize, point: Option<&Point>| {
         Some(motion.nearest(from, to, point?)?.instant.speed.ln())
     };
-    into.add(Feature::Speed, speed(span.from, around.beyond(span), of.middle.as_ref()));
-    into.add(Feature::Start, speed(around.before, middle + 1, of.start.as_ref()));
-    into.add(Feature::End, speed(middle, around.beyond(span), of.end.as_ref()));
+    into.add(Feature::Start, speed(moving.start, middle.row + 1, of.start.as_ref()));
+    into.add(Feature::End, speed(middle.row, moving.end, of.end.as_ref()));
     let Some(after) = around.after else { return };
-    into.add(Feature::Rest, Some(motion.resting(middle, after, of.rest)));
+    into.add(Feature::Rest, Some(motion.resting(middle.row, after, of.rest)));
     let Some(corner) = &of.corner else { return };
-    let passage = motion.nearest(middle, after, corner);
+    let passage = motion.nearest(middle.row, after, corner);
     into.add(Feature::Corner, passage.map(|of| of.instant.distance(corner)));
 }

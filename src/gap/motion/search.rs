@@ -151,7 +151,8 @@ fn candidates(movements: &[Movement], timing: Timing) -> Vec<Law> {
             }
             Timing::Blending => (None, vec![of(Feature::Corner).zip(cut).map(|(e, cut)| e / cut)]),
         };
-        let values = values.into_iter().flatten().filter(|value| value.abs() > least(timing));
+        let values = values.into_iter().flatten().filter(|value| value.is_finite());
+        let values = values.filter(|value| value.abs() > least(timing));
         let reaching = |value| REACHES.map(|reach| Law { timing, at, value, reach });
         laws.extend(values.flat_map(reaching));
     }

@@ -1,5 +1,7 @@
 //! Positions and speeds of a log without its noise.
 
+use std::ops::Range;
+
 use crate::arm::robot::MAX_DOF;
 use crate::learn::log::quantile;
 
@@ -64,14 +66,22 @@ impl Smooth {
 
     /// How long the robot is slower than a speed between two rows \[s\].
     pub(super) fn resting(&self, from: usize, to: usize, speed: f64) -> f64 {
-        let rows = &self.rows[from..to];
+        let rows = self.rows.get(from..to).unwrap_or_default();
         let pairs = rows.windows(2).filter(|pair| pair[0].speed < speed);
         pairs.map(|pair| pair[1].t - pair[0].t).sum()
     }
 
+    /// The rows of some in which the robot is not slower than a speed, from one of them to both sides.
+    pub(super) fn moving(&self, rows: Range<usize>, at: usize, speed: f64) -> Range<usize> {
+        let is_slow = |row: &usize| self.rows[*row].speed < speed;
+        let from = (rows.start..at).rev().find(is_slow).unwrap_or(rows.start);
+        let to = (at..rows.end.min(self.rows.len())).find(is_slow).unwrap_or(rows.end);
+        from..to
+    }
+
     /// Where the motion is nearest to some positions, between two rows.
     pub(super) fn nearest(&self, from: usize, to: usize, q: &[f64; MAX_DOF]) -> Option<Passage> {
-        let rows = &self.rows[from.min(self.rows.len())..to.min(self.rows.len())];
+        let rows = self.rows.get(from..to.min(self.rows.len()))?;
         let distances = rows.iter().map(|of| of.distance(q));
         let (near, _) = distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
         let row = from + near;
@@ -91,7 +101,7 @@ impl Smooth {
 }
 
 /// Where a motion passes a point.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Passage {
     /// The row beside it.
     pub row: usize,
@@ -107,7 +117,7 @@ fn between(a: &Instant, b: &Instant, share: f64) -> Instant {
 }
 
 /// The parabola through some rows by least squares, at a time, and the deviation of its speed.
-fn local(run: &Run, rows: std::ops::Range<usize>, t: f64) -> (Instant, Option<f64>) {
+fn local(run: &Run, rows: Range<usize>, t: f64) -> (Instant, Option<f64>) {
     let mut moments = [0.0; 2 * ORDER - 1];
     for at in &run.t[rows.clone()] {
         let mut power = 1.0;
