@@ -136,15 +136,14 @@ impl Law {
         if movement.landmarks.plateau > PEAK {
             return self.drifting(&ramps, movement, scale);
         }
-        let scaled = Expected::exactly(longer, FORM);
         let modes = ramps.iter().flat_map(|ramp| {
             [
                 ramp.weighing(USUAL * ramp.weight),
-                ramp.weighing(OTHER * ramp.weight).with(Speed, slower).with(Duration, scaled),
                 ramp.weighing(RARE * ramp.weight).with(Speed, partly),
             ]
         });
-        self.drifting(&modes.collect::<Vec<Mode>>(), movement, scale)
+        let modes = modes.chain(scaled(movement, scale)).collect::<Vec<Mode>>();
+        self.drifting(&modes, movement, scale)
     }
 
     /// Plateaus are lower, ramps stay up to them; what has none is slower in all, what does not
@@ -158,12 +157,12 @@ impl Law {
         let rounded = ROUNDED * scale.abs();
         let same = Expected::between(beyond - rounded, rounded);
         let capped = stretched(movement, longer, scale).with(Start, same).with(End, same);
-        let scaled = stretched(movement, longer, scale).with(Speed, slower).with(Start, slower);
-        let scaled = scaled.with(End, slower).with(Duration, Expected::exactly(longer, FORM));
+        let [whole, part] = scaled(movement, scale);
         let modes = [
             capped.weighing(USUAL).with(Speed, slower),
-            capped.weighing(OTHER).with(Speed, Expected::between(scale, 0.0)),
-            scaled.weighing(RARE),
+            capped.weighing(RARE).with(Speed, Expected::between(scale, 0.0)),
+            whole,
+            part,
         ];
         self.drifting(&modes, movement, scale)
     }
@@ -216,4 +215,21 @@ fn stretched(movement: &Movement, longer: f64, scale: f64) -> Mode {
         .with(Duration, Expected::between(0.0, longer))
         .with(Shift, Expected::within(shifted * longer))
         .with(Rest, Expected::between(-ends, ends))
+}
+
+/// A movement that takes its time in all of it, to the end or as far as its own speed says.
+fn scaled(movement: &Movement, scale: f64) -> [Mode; 2] {
+    let own = movement.change(Speed).map_or(scale, |change| change.value);
+    let of = |change: f64, speed: Expected| {
+        let longer = movement.moving() * ((-change).exp() - 1.0);
+        let alike = Expected::exactly(change, FORM);
+        stretched(movement, longer, change)
+            .weighing(EITHER * OTHER)
+            .with(Speed, speed)
+            .with(Start, alike)
+            .with(End, alike)
+            .with(Duration, Expected::exactly(longer, FORM))
+    };
+    let part = own.clamp(scale.min(0.0), scale.max(0.0));
+    [of(scale, Expected::exactly(scale, FORM)), of(part, Expected::between(scale, 0.0))]
 }
