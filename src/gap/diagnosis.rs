@@ -7,8 +7,8 @@ use super::data::Record;
 use super::decision::{Entry, Finding, Place, Remainder, Verdict, asserted};
 use super::grade::{Budget, Shrink, shrink};
 use super::model::Improved;
+use super::motion::RunFound;
 use super::power::PowerFound;
-use super::runs::RunFound;
 
 /// A diagnosis of torques.
 #[derive(Clone)]
@@ -42,11 +42,12 @@ pub struct Diagnosis {
 }
 
 impl Diagnosis {
-    /// Of logs whose numbers cannot be compared.
-    pub(super) fn failed(model: &Model, held: &[Record<'_>]) -> Diagnosis {
+    /// Of a robot whose torques are not logged.
+    #[must_use]
+    pub fn without_torques(model: &Model) -> Diagnosis {
         let same = Improved::same(model);
         Diagnosis {
-            verdict: Verdict::Unknown,
+            verdict: Verdict::NoGap,
             effects: Vec::new(),
             candidates: Vec::new(),
             remainder: Vec::new(),
@@ -54,11 +55,21 @@ impl Diagnosis {
             everyday: Vec::new(),
             budget: Vec::new(),
             places: Vec::new(),
-            shrink: shrink(held, [model, model, model]),
+            shrink: Shrink::default(),
             refit: same.clone(),
             improved: same,
-            reasons: vec!["the logs cannot be compared with the model".to_owned()],
+            reasons: Vec::new(),
             channels: Vec::new(),
+        }
+    }
+
+    /// Of logs whose numbers cannot be compared.
+    pub(super) fn failed(model: &Model, held: &[Record<'_>]) -> Diagnosis {
+        Diagnosis {
+            verdict: Verdict::Unknown,
+            shrink: shrink(held, [model, model, model]),
+            reasons: vec!["the logs cannot be compared with the model".to_owned()],
+            ..Diagnosis::without_torques(model)
         }
     }
 
@@ -105,6 +116,9 @@ impl Diagnosis {
         }
         self.channels.push(("motion", "s", found.gap));
         self.add(!found.effects.is_empty(), found.is_unknown);
+        if self.verdict == Verdict::Effect && found.is_ambiguous() {
+            self.verdict = Verdict::NotSeparable;
+        }
     }
 
     fn add(&mut self, has_effect: bool, is_unknown: bool) {

@@ -11,10 +11,10 @@ mod diagnose;
 mod diagnosis;
 mod grade;
 mod model;
+mod motion;
 mod phase;
 mod posterior;
 mod power;
-mod runs;
 mod tunables;
 
 pub use data::{Record, RecordKind, common_factor};
@@ -29,5 +29,5 @@ pub use grade::{
 pub use model::{Fitted, Improved};
 pub use phase::Phase;
 pub use power::{PowerEffect, PowerFound, Powers, diagnose_power};
-pub use runs::{Run, RunEffect, RunFound, diagnose_runs};
+pub use motion::{Run, RunEffect, RunFound, diagnose_runs};
 pub use tunables::{Tunable, Tunables};

@@ -24,7 +24,7 @@ pub use applied::{
 };
 pub use effect::{
     Acts, Channel, Coordinate, Effect, Form, Nature, OfMotion, Parameter, Published, Role, Scope,
-    Subject, Values, Variable,
+    Subject, Timing, Values, Variable,
 };
 pub use motion::Motion;
 pub use register::{ALL, find};

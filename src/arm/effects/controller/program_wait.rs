@@ -1,6 +1,6 @@
 //! A wait that is not in the model.
 
-use crate::arm::effects::effect::{Acts, Channel, Effect, Form, Nature, Scope, Subject, free};
+use crate::arm::effects::effect::{Acts, Channel, Effect, Form, Nature, Scope, Subject, Timing, free};
 
 pub(in crate::arm::effects) const PROGRAM_WAIT: Effect = Effect {
     id: "program_wait",
@@ -20,5 +20,5 @@ pub(in crate::arm::effects) const PROGRAM_WAIT: Effect = Effect {
     brings: &[],
     confused: &["acceleration_limit"],
     experiment: ["", "the same program again, logged with `line` or `cmd`"],
-    form: Form::Elsewhere,
+    form: Form::Timing(Timing::Wait),
 };

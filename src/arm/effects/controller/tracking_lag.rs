@@ -1,6 +1,6 @@
 //! Lag of the servos.
 
-use crate::arm::effects::effect::{Acts, Channel, Effect, Form, Nature, Scope, Subject, free};
+use crate::arm::effects::effect::{Acts, Channel, Effect, Form, Nature, Scope, Subject, Timing, free};
 
 pub(in crate::arm::effects) const TRACKING_LAG: Effect = Effect {
     id: "tracking_lag",
@@ -20,5 +20,5 @@ pub(in crate::arm::effects) const TRACKING_LAG: Effect = Effect {
     brings: &[],
     confused: &["zone_blending"],
     experiment: ["", "the same program again, logged with `line` or `cmd`"],
-    form: Form::Elsewhere,
+    form: Form::Timing(Timing::Lag),
 };

@@ -1,6 +1,6 @@
 //! Corners that are cut more or less.
 
-use crate::arm::effects::effect::{Acts, Channel, Effect, Form, Nature, Scope, Subject, bounded};
+use crate::arm::effects::effect::{Acts, Channel, Effect, Form, Nature, Scope, Subject, Timing, bounded};
 
 pub(in crate::arm::effects) const ZONE_BLENDING: Effect = Effect {
     id: "zone_blending",
@@ -20,5 +20,5 @@ pub(in crate::arm::effects) const ZONE_BLENDING: Effect = Effect {
     brings: &[],
     confused: &["acceleration_limit"],
     experiment: ["", "the same program again, logged with `line` or `cmd`"],
-    form: Form::Elsewhere,
+    form: Form::Timing(Timing::Blending),
 };
