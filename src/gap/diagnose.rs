@@ -2,7 +2,8 @@
 
 use super::data::{Record, RecordKind};
 use super::decision::{
-    Candidate, Decision, Finding, Found, Gate, Search, Tried, Verdict, decide, fit_effects, may_name_parameters,
+    Candidate, Decision, Finding, Found, Gate, Search, Tried, Verdict, decide, fit_effects,
+    may_name_parameters,
 };
 use super::design::{Design, Trust};
 use super::diagnosis::Diagnosis;
@@ -58,9 +59,43 @@ pub fn diagnose_logs(
     tell: &dyn Fn(Phase),
 ) -> Diagnosis {
     let held = if logs.held.is_empty() { logs.train } else { logs.held };
-    let mut train = all(model, logs.train);
-    train.extend(logs.before.iter().flat_map(|log| Record::before(model, log)));
-    diagnose_telling(model, train, &all(model, held), settings, tell)
+    tell(Phase::Baseline);
+    let known = robot_of(model, logs.before, settings);
+    let (believed, before) = known.unwrap_or_else(|| (Improved::same(model), Vec::new()));
+    let mut train = all(&believed.applied, logs.train);
+    train.extend(logs.before.iter().flat_map(|log| Record::before(&believed.applied, log)));
+    let held = all(&believed.applied, held);
+    let found = diagnose_telling([model, &believed.written], train, &held, settings, tell);
+    Diagnosis { before, ..found }
+}
+
+/// The robot of a baseline that differs from the model by more than everyday errors, with the effects
+/// that it has already.
+fn robot_of(
+    model: &Model,
+    before: &[&Samples],
+    settings: &Settings,
+) -> Option<(Improved, Vec<Finding>)> {
+    if before.is_empty() {
+        return None;
+    }
+    let mut records = all(model, before);
+    let design = with_loads(&mut records, settings);
+    let none = Search::none_of(&design)?;
+    let is_everyday =
+        |joint: usize| none.fit.everyday(&design, joint) < settings.tunables.usual_error;
+    if (0..model.dof).all(is_everyday) {
+        return None;
+    }
+    // Robots warm up differently each day.
+    let effects = nameable(&records, settings).into_iter().filter(|of| of.acts != Acts::OverTime);
+    let search = Search::new(&records, &design, &effects.collect::<Vec<_>>());
+    let (none, found, tried) = search.best(none);
+    let refit = improved(model, &design, &[]);
+    let held = all(model, before);
+    let models = Models { nominal: model, believed: model, refit: &refit };
+    let Graded { decision, best, .. } = graded(&search, [&none, &found], &tried, &held, &models);
+    (!decision.effects.is_empty()).then_some((best, decision.effects))
 }
 
 fn all<'m>(model: &'m Model, logs: &[&Samples]) -> Vec<Record<'m>> {
@@ -75,13 +110,13 @@ pub fn diagnose(
     held: &[Record<'_>],
     settings: &Settings,
 ) -> Diagnosis {
-    diagnose_telling(model, train, held, settings, &|_| {})
+    diagnose_telling([model, model], train, held, settings, &|_| {})
 }
 
-/// The same; `tell` is called with each phase that begins.
-#[must_use]
-pub fn diagnose_telling(
-    model: &Model,
+/// The same of a nominal model, with that of the baseline, of which the records are; `tell` is called
+/// with each phase that begins.
+fn diagnose_telling(
+    [model, believed]: [&Model; 2],
     mut train: Vec<Record<'_>>,
     held: &[Record<'_>],
     settings: &Settings,
@@ -92,12 +127,13 @@ pub fn diagnose_telling(
     let effects = nameable(&train, settings);
     tell(Phase::Search);
     let search = Search::new(&train, &design, &effects);
-    let Some(none) = search.none() else { return Diagnosis::failed(model, held) };
+    let Some(none) = Search::none_of(&design) else { return Diagnosis::failed(model, held) };
     let (none, found, tried) = search.best(none);
     tell(Phase::Decision);
-    let refit = improved(model, &design, &[]);
+    let refit = improved(believed, &design, &[]);
+    let models = Models { nominal: model, believed, refit: &refit };
     let Graded { mut decision, mut best, mut graded } =
-        graded(&search, [&none, &found], &tried, held, (model, &refit));
+        graded(&search, [&none, &found], &tried, held, &models);
     tell(Phase::Grading);
     let mut reasons = Vec::new();
     if let Some(why) = refusal(&train, &graded, settings) {
@@ -131,7 +167,17 @@ pub fn diagnose_telling(
         improved: best,
         reasons,
         channels: Vec::new(),
+        before: Vec::new(),
     }
+}
+
+/// Models that a decision is compared with.
+struct Models<'a> {
+    nominal: &'a Model,
+    /// As the baseline shows it.
+    believed: &'a Model,
+    /// With other parameters.
+    refit: &'a Improved,
 }
 
 /// A decision with the model that comes of it.
@@ -147,7 +193,7 @@ fn graded(
     [none, found]: [&Found; 2],
     tried: &[Tried],
     held: &[Record<'_>],
-    (model, refit): (&Model, &Improved),
+    models: &Models<'_>,
 ) -> Graded {
     let mut found = found.clone();
     let mut trail = Vec::new();
@@ -155,13 +201,13 @@ fn graded(
     loop {
         let mut decision = decide(search, none, &found, tried);
         let best = match decision.asserted.is_empty() {
-            true => refit.clone(),
-            false => improved(model, search.design, &decision.asserted),
+            true => models.refit.clone(),
+            false => improved(models.believed, search.design, &decision.asserted),
         };
-        let graded = shrink(held, [model, &refit.applied, &best.applied]);
-        let limit = search.design.tunables.left_in_heldout;
+        let graded = shrink(held, [models.nominal, &models.refit.applied, &best.applied]);
         let mut idle: Vec<&'static str> = Vec::new();
-        for of in decision.effects.iter().filter(|of| is_in_all_logs(of.effect)) {
+        for of in &decision.effects {
+            let Some(limit) = left_at_most(of.effect, &search.design.tunables) else { continue };
             let entry = Gate::HeldOut.of(of.effect.id.to_owned(), left(of, &graded), limit);
             if !entry.passed {
                 idle.push(of.effect.id);
@@ -184,10 +230,15 @@ fn graded(
     }
 }
 
-/// Whether an effect is in all logs of a robot that has it, and nothing that the refitted model has
-/// too.
-fn is_in_all_logs(effect: &Effect) -> bool {
-    effect.nature == Nature::Law && !matches!(effect.acts, Acts::InWindow | Acts::OverTime)
+/// What an effect may leave of the gap in held-out data; `None` for one that need not be there, or that
+/// the refitted model has too.
+fn left_at_most(effect: &Effect, tunables: &Tunables) -> Option<f64> {
+    match (effect.nature, effect.acts) {
+        (Nature::Law, Acts::Always | Acts::AfterReversals) => Some(tunables.left_in_heldout),
+        // Robots warm up differently each day.
+        (Nature::Law, Acts::OverTime) => Some(1.0),
+        (Nature::Law, Acts::InWindow) | (Nature::Parameter | Nature::Parameters, _) => None,
+    }
 }
 
 /// What is left of the gap at an effect's joints, of what the refitted model leaves, or of an everyday

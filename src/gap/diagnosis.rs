@@ -37,6 +37,8 @@ pub struct Diagnosis {
     pub improved: Improved,
     /// Why the verdict is what it is.
     pub reasons: Vec<String>,
+    /// Effects that a baseline has already.
+    pub before: Vec<Finding>,
     /// Rms gaps of other channels: name, unit; noise, before, after.
     pub channels: Vec<(&'static str, &'static str, [f64; 3])>,
 }
@@ -60,6 +62,7 @@ impl Diagnosis {
             improved: same,
             reasons: Vec::new(),
             channels: Vec::new(),
+            before: Vec::new(),
         }
     }
 

@@ -20,14 +20,14 @@ mod tunables;
 pub use data::{Record, RecordKind, common_factor};
 pub use decision::{Entry, Estimated, Finding, Gate, Place, Remainder, Verdict};
 pub use design::Trust;
-pub use diagnose::{Logs, Settings, diagnose, diagnose_logs, diagnose_telling};
+pub use diagnose::{Logs, Settings, diagnose, diagnose_logs};
 pub use diagnosis::Diagnosis;
 pub use grade::{
     Attribution, Budget, Cell, Interval, JointGap, PARAMETERS, Profile, Quantity, Shape, Shrink,
     Torques, Trace, attribution, beside_no_jump, missed, predicted, profile, shapes, shrink, trace,
 };
 pub use model::{Fitted, Improved};
+pub use motion::{Run, RunEffect, RunFound, diagnose_runs};
 pub use phase::Phase;
 pub use power::{PowerEffect, PowerFound, Powers, diagnose_power};
-pub use motion::{Run, RunEffect, RunFound, diagnose_runs};
 pub use tunables::{Tunable, Tunables};

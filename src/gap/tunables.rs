@@ -117,6 +117,8 @@ tunables! {
     least_change = 0.005, "1", "chosen on data/gap_cases";
     /// The same, of the everyday error of the joint.
     over_everyday = 0.4, "1", "chosen on data/gap_cases";
+    /// The same, of what is left where that is more than any everyday error.
+    over_unexplained = 3.0, "1", "derived: nine tenths of the squares are explained";
     /// Largest everyday error, of the torque.
     usual_error = 0.03, "1", "derived: 0.2 to 3 % of the torque";
     /// Noise over that of the baseline that is a finding.

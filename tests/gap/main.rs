@@ -12,7 +12,7 @@ use joulepath::arm::effects::{ALL, Effect, find as effect, with_body};
 use joulepath::arm::robot::{Given, Model};
 use joulepath::gap::{
     Diagnosis, Fitted, Improved, Logs, PARAMETERS, Place, Quantity, Record, Settings, Trust,
-    Verdict, attribution, common_factor, diagnose, diagnose_logs, predicted, shapes,
+    Tunables, Verdict, attribution, common_factor, diagnose, diagnose_logs, predicted, shapes,
 };
 use joulepath::learn::identify::Samples;
 
@@ -41,7 +41,11 @@ fn diagnosed(nominal: &Model, robot: &Robot<'_>) -> Diagnosis {
 }
 
 fn diagnosed_by(nominal: &Model, robot: &Robot<'_>, effects: Vec<&'static Effect>) -> Diagnosis {
-    diagnosed_with(nominal, robot, &Settings { trust: Trust::Commissioned, effects })
+    diagnosed_with(
+        nominal,
+        robot,
+        &Settings { trust: Trust::Commissioned, effects, tunables: Tunables::DEFAULT },
+    )
 }
 
 fn diagnosed_with(nominal: &Model, robot: &Robot<'_>, settings: &Settings) -> Diagnosis {
@@ -78,13 +82,17 @@ fn only_changes_against_the_baseline_are_reported() {
     let both: [(&Effect, usize, &[f64]); 2] = [(load, 0, &LOAD), (friction, 1, &[8.0, 0.1])];
     let logged = |effects, seed| Robot { model: &truth, effects, noise: 0.005 }.samples(seed);
     let before = logged(&both[..1], 4);
-    let settings = Settings { trust: Trust::Commissioned, effects: ALL.iter().collect() };
+    let settings = Settings {
+        trust: Trust::Commissioned,
+        effects: ALL.iter().collect(),
+        tunables: Tunables::DEFAULT,
+    };
     for (effects, reported) in [(&both[..1], vec![]), (&both[..], vec![("stribeck", vec![2])])] {
         let now = [1, 2, 3].map(|seed| logged(effects, seed));
         let [train, held, before] = [&[&now[0], &now[1]][..], &[&now[2]], &[&before]];
         let found = diagnose_logs(&nominal, Logs { train, held, before }, &settings, &|_| {});
         assert_eq!(named(&found), reported);
-        let known: Vec<&str> = found.before.iter().flatten().map(|of| of.effect.id).collect();
+        let known: Vec<&str> = found.before.iter().map(|of| of.effect.id).collect();
         assert_eq!(known, ["payload"]);
         // The model contains both effects.
         assert!(found.shrink.total.value > SHRINKS, "{:?}", found.shrink);
@@ -226,7 +234,8 @@ fn backlash_is_found_despite_wrong_masses() {
     }
     let effects = [(effect("backlash").unwrap(), 2, [0.005, 0.0, 1e5].as_slice())];
     let robot = Robot { model: &truth, effects: &effects, noise: 0.003 };
-    let settings = Settings { trust: Trust::Cad, effects: ALL.iter().collect() };
+    let settings =
+        Settings { trust: Trust::Cad, effects: ALL.iter().collect(), tunables: Tunables::DEFAULT };
     let found = diagnosed_with(&nominal, &robot, &settings);
     assert_eq!(named(&found), [("backlash", vec![3])], "{:?}", found.reasons);
 }
@@ -501,7 +510,11 @@ fn unrelated_torques_and_resting_joints_have_no_effect() {
             samples
         });
         let [train, held] = samples.each_ref().map(|of| Record::all(&nominal, of));
-        let settings = Settings { trust: Trust::Commissioned, effects: ALL.iter().collect() };
+        let settings = Settings {
+            trust: Trust::Commissioned,
+            effects: ALL.iter().collect(),
+            tunables: Tunables::DEFAULT,
+        };
         diagnose(&nominal, train, &held, &settings)
     };
     let other = diagnosed(&|samples| {

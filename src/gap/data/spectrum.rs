@@ -81,11 +81,6 @@ impl Spectrum {
         2 * self.bins - 1
     }
 
-    /// The frequency's number of a row.
-    pub(super) fn bin(row: usize) -> usize {
-        row.div_ceil(2)
-    }
-
     /// The mean, then real and imaginary part of each frequency; white noise of some variance
     /// has the same in each row.
     pub(super) fn of(&self, x: impl Iterator<Item = f64>) -> Vec<f64> {

@@ -96,8 +96,14 @@ pub fn decide(search: &Search<'_>, none: &Found, found: &Found, tried: &[Tried])
         for (k, piece) in of.pieces.iter().enumerate() {
             let joint = piece.fitted.joint;
             let at = joint.map_or(id.to_owned(), |joint| format!("{id} of joint {}", joint + 1));
-            let over = tunables.over_everyday;
-            let least = joint.map_or(least, |joint| least.max(over * left(found, joint)));
+            let least = joint.map_or(least, |joint| {
+                let left = left(found, joint);
+                let over = match left > tunables.usual_error {
+                    true => tunables.over_unexplained,
+                    false => tunables.over_everyday,
+                };
+                least.max(over * left)
+            });
             let largest = largest_confused(&weighed, number, joint);
             let is_quiet = joint.is_none_or(|joint| !noisy.contains(&joint));
             let mut there = is_quiet

@@ -92,8 +92,8 @@ impl<'a> Search<'a> {
 impl Search<'_> {
     /// The fit without effects.
     #[must_use]
-    pub fn none(&self) -> Option<Found> {
-        let fit = fitted(self.design, Hypothesis::default(), usual(self.design), FIRST, false)?;
+    pub fn none_of(design: &Design) -> Option<Found> {
+        let fit = fitted(design, Hypothesis::default(), usual(design), FIRST, false)?;
         Some(Found { effects: Vec::new(), score: 0.0, fit })
     }
 
@@ -215,7 +215,11 @@ impl Search<'_> {
     pub fn without_ids(&self, none: &Found, found: &Found, ids: &[&str]) -> Option<Found> {
         let mut effects = found.effects.clone();
         effects.retain(|of| !ids.contains(&of.effect.id));
-        if effects.is_empty() { Some(none.clone()) } else { self.with(none, effects, none.fit.sizes.clone()) }
+        if effects.is_empty() {
+            Some(none.clone())
+        } else {
+            self.with(none, effects, none.fit.sizes.clone())
+        }
     }
 
     /// The set without one of its effects.
@@ -287,7 +291,21 @@ impl Search<'_> {
             })
             .collect();
         all.sort_by(|a, b| b.score.total_cmp(&a.score));
-        if std::env::var("JP_S").is_ok() { for f in &all { eprintln!("  {:.1} {:?}", f.score, f.effects.iter().map(|e| (e.effect.id, e.pieces.iter().map(|p| (p.joint, p.shape.clone())).collect::<Vec<_>>())).collect::<Vec<_>>()); } }
+        if std::env::var("JP_S").is_ok() {
+            for f in &all {
+                eprintln!(
+                    "  {:.1} {:?}",
+                    f.score,
+                    f.effects
+                        .iter()
+                        .map(|e| (
+                            e.effect.id,
+                            e.pieces.iter().map(|p| (p.joint, p.shape.clone())).collect::<Vec<_>>()
+                        ))
+                        .collect::<Vec<_>>()
+                );
+            }
+        }
         let rest = all.split_off(all.len().min(REFINED));
         let mut all: Vec<Found> =
             all.into_iter().map(|of| self.refined(none, found, of)).chain(rest).collect();

@@ -52,6 +52,22 @@ impl Gate {
         }
     }
 
+    /// What its value is.
+    #[must_use]
+    pub fn what(self) -> &'static str {
+        match self {
+            Gate::Evidence => "evidence, nats",
+            Gate::JointEvidence => "evidence of the joint, nats",
+            Gate::Size => "share of the joint's torque",
+            Gate::Form => "size beside a law that it may be a form of",
+            Gate::Bounds => "deviations beyond what is possible",
+            Gate::Noise => "noise over that of the baseline",
+            Gate::HeldOut => "what is left of the gap in the held-out data",
+            Gate::Unexplained => "share of the torque that nothing explains",
+            Gate::Class => "effects that the logs cannot tell apart",
+        }
+    }
+
     /// The answer for a value.
     #[must_use]
     pub fn of(self, hypothesis: String, value: f64, limit: f64) -> Entry {

@@ -22,9 +22,6 @@ pub struct Fitted {
     pub parameters: Vec<f64>,
     /// Their standard deviations.
     pub deviations: Vec<f64>,
-    /// The largest of its linear coordinates over their deviation; infinite where the effect
-    /// acts without them.
-    pub significance: f64,
 }
 
 impl Fitted {
@@ -118,17 +115,11 @@ fn with_deviations(
         }
     }
     let covariance = &jacobian * spread * jacobian.transpose();
-    let linear = effect.coordinates.iter().enumerate();
-    let linear = linear.filter(|(_, of)| matches!(of.role, Role::Linear));
-    let significance = linear
-        .map(|(k, _)| coordinates[k].abs() / spread[(k, k)].sqrt().max(1e-300))
-        .fold(None, |most: Option<f64>, x| Some(most.map_or(x, |most| most.max(x))));
     Fitted {
         effect,
         joint,
         coordinates: coordinates.to_vec(),
         parameters,
         deviations: covariance.diagonal().iter().map(|x| x.max(0.0).sqrt()).collect(),
-        significance: significance.unwrap_or(f64::INFINITY),
     }
 }

@@ -82,6 +82,10 @@ pub(super) struct DiagnoseArgs {
     #[arg(long, value_name = "FILE.html")]
     report: Option<PathBuf>,
 
+    /// Print the answers of all gates that lead to the verdict.
+    #[arg(long)]
+    explain: bool,
+
     /// How the result is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -109,7 +113,11 @@ enum TrustArg {
 
 pub(super) fn run(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
     let (found, basis) = run_diagnosis(args)?;
-    common::print(args.format, || report::json(&found, &basis), || report::text(&found, &basis))?;
+    let text = || {
+        let trail = if args.explain { report::trail(&found) } else { String::new() };
+        report::text(&found, &basis) + &trail
+    };
+    common::print(args.format, || report::json(&found, &basis), text)?;
     Ok(if found.verdict == Verdict::NoGap { ExitCode::SUCCESS } else { ExitCode::from(1) })
 }
 
@@ -134,6 +142,7 @@ pub(super) fn diagnose_case(
         period: options.get("period").and_then(Value::as_f64),
         out: without.is_empty().then(|| case.join("improved.toml")),
         report: None,
+        explain: false,
         format: Format::Json,
         quiet: true,
     };
@@ -221,6 +230,8 @@ fn run_diagnosis(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basi
     let settings = Settings { trust, effects: of_torque, tunables: Tunables::DEFAULT };
     let mut found =
         diagnose_with_progress(&model, [&train, &held, compared], &settings, &progress(args.quiet));
+    let known = found.before.iter();
+    basis.notes.extend(known.map(|of| format!("{}: in the baseline already", report::called(of))));
     if let Some(of) = &of_power {
         found.add_power(of);
     }

@@ -1,6 +1,8 @@
 //! Acceleration that is higher or lower.
 
-use crate::arm::effects::effect::{Acts, Channel, Effect, Form, Nature, Scope, Subject, Timing, bounded};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, Timing, bounded,
+};
 
 pub(in crate::arm::effects) const ACCELERATION_LIMIT: Effect = Effect {
     id: "acceleration_limit",

@@ -1,6 +1,8 @@
 //! A wait that is not in the model.
 
-use crate::arm::effects::effect::{Acts, Channel, Effect, Form, Nature, Scope, Subject, Timing, free};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, Timing, free,
+};
 
 pub(in crate::arm::effects) const PROGRAM_WAIT: Effect = Effect {
     id: "program_wait",

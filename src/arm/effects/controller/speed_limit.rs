@@ -1,6 +1,8 @@
 //! Speed that is limited.
 
-use crate::arm::effects::effect::{Acts, Channel, Effect, Form, Nature, Scope, Subject, Timing, bounded};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, Timing, bounded,
+};
 
 pub(in crate::arm::effects) const SPEED_LIMIT: Effect = Effect {
     id: "speed_limit",

@@ -1,6 +1,8 @@
 //! Lag of the servos.
 
-use crate::arm::effects::effect::{Acts, Channel, Effect, Form, Nature, Scope, Subject, Timing, free};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, Timing, free,
+};
 
 pub(in crate::arm::effects) const TRACKING_LAG: Effect = Effect {
     id: "tracking_lag",

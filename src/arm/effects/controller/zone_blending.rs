@@ -1,6 +1,8 @@
 //! Corners that are cut more or less.
 
-use crate::arm::effects::effect::{Acts, Channel, Effect, Form, Nature, Scope, Subject, Timing, bounded};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, Timing, bounded,
+};
 
 pub(in crate::arm::effects) const ZONE_BLENDING: Effect = Effect {
     id: "zone_blending",

@@ -18,9 +18,8 @@ pub(in crate::arm::effects) const ROTOR_INERTIA: Effect = Effect {
     title: "Inertia of the rotor",
     law: "τ = inertia·q̈_motor",
     source: "M. Gautier, W. Khalil, Direct calculation of minimum set of inertial parameters, IEEE T-RA 6, 1990: of axes 1 and 2 grouped with the links",
-    parameters: &[free("inertia", "kg m2", "change of the rotor inertia, at the joint").beside(
-        |model, joint| model.rotors().map(|of| of.reflected_inertia(joint)),
-    )],
+    parameters: &[free("inertia", "kg m2", "change of the rotor inertia, at the joint")
+        .beside(|model, joint| model.rotors().map(|of| of.reflected_inertia(joint)))],
     coordinates: &[linear(usual)],
     published: None,
     joints: every,

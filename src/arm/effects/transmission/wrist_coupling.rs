@@ -23,9 +23,8 @@ pub(in crate::arm::effects) const WRIST_COUPLING: Effect = Effect {
             .beside(|model, _| Some(model.friction.coulomb[model.dof - 1])),
         free("viscous", "Nm s/rad", "the same, viscous")
             .beside(|model, _| Some(model.friction.viscous[model.dof - 1])),
-        free("inertia", "kg m2", "change of the inertia of rotor 6, at the joint").beside(
-            |model, _| model.motors.as_ref().map(|of| of.reflected_inertia(model.dof - 1)),
-        ),
+        free("inertia", "kg m2", "change of the inertia of rotor 6, at the joint")
+            .beside(|model, _| model.motors.as_ref().map(|of| of.reflected_inertia(model.dof - 1))),
     ],
     coordinates: &[
         // Torques jump at reversals of the motor, so they have no derivative.
