@@ -7,11 +7,12 @@ use super::decision::{
 };
 use super::design::{Design, Trust};
 use super::diagnosis::Diagnosis;
-use super::grade::{JointGap, Shrink, budget, places, places_missed, predicted, shrink};
+use super::grade::{JointGap, Shrink, budget, places, places_missed, shrink};
 use super::model::Improved;
 use super::phase::Phase;
-use super::posterior::{Hypothesis, Member, fitted, without_everyday};
+use super::posterior::{Hypothesis, Member, fitted_as_written};
 use super::tunables::Tunables;
+use crate::arm::dynamics::Load;
 use crate::arm::effects::{Acts, Effect, Nature};
 use crate::arm::robot::Model;
 use crate::learn::identify::Samples;
@@ -306,7 +307,7 @@ fn with_loads(train: &mut [Record<'_>], settings: &Settings) -> Design {
     let refit = improved(&model, &design, &[]);
     for record in train.iter_mut() {
         record.motion.carry(&refit.applied);
-        record.motion.torque = predicted(record, &refit.applied);
+        record.motion.torque = record.motion.torques_of(&refit.applied, &Load::none());
     }
     Design::new(train, settings.trust, &settings.tunables)
 }
@@ -334,7 +335,7 @@ fn improved(model: &Model, design: &Design, effects: &[Candidate]) -> Improved {
     let pieces = effects.iter().flat_map(|of| &of.pieces);
     let members = pieces.map(|piece| Member { piece: piece.clone(), forms: Vec::new() });
     let hypothesis = Hypothesis { members: members.collect() };
-    let Some(fit) = fitted(design, hypothesis, without_everyday(design), STEPS, false) else {
+    let Some(fit) = fitted_as_written(design, hypothesis, STEPS) else {
         return Improved::same(model);
     };
     let count = design.parameters.mixing.ncols();

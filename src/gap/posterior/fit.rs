@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::hypothesis::{Extra, Hypothesis};
 use super::reduced::{Reduced, variance};
-use super::sizes::{JointSizes, Size, Sizes};
+use super::sizes::{JointSizes, Size, Sizes, without_everyday};
 use crate::arm::effects::Variable;
 use crate::gap::design::{Cell, Design, Group, JointDesign, Set};
 
@@ -24,6 +24,8 @@ pub struct Fit {
     pub mean: DVector<f64>,
     /// Their covariance.
     pub covariance: DMatrix<f64>,
+    /// Size of the parameters of the torque path: 0 where they are not there.
+    path: f64,
     pub(super) reduced: Vec<Reduced>,
     pub(super) extra: Vec<Extra>,
 }
@@ -38,6 +40,22 @@ pub fn fitted(
     design: &Design,
     hypothesis: Hypothesis,
     sizes: Sizes,
+    rounds: usize,
+    touched_only: bool,
+) -> Option<Fit> {
+    fit_from(design, hypothesis, (sizes, 1.0), rounds, touched_only)
+}
+
+/// Fits a hypothesis with what a written model has: neither everyday errors nor lags of the torques.
+#[must_use]
+pub fn fitted_as_written(design: &Design, hypothesis: Hypothesis, rounds: usize) -> Option<Fit> {
+    fit_from(design, hypothesis, (without_everyday(design), 0.0), rounds, false)
+}
+
+fn fit_from(
+    design: &Design,
+    hypothesis: Hypothesis,
+    (sizes, path): (Sizes, f64),
     rounds: usize,
     touched_only: bool,
 ) -> Option<Fit> {
@@ -56,6 +74,7 @@ pub fn fitted(
         log_evidence: f64::NEG_INFINITY,
         mean: DVector::zeros(0),
         covariance: DMatrix::zeros(0, 0),
+        path,
         reduced: Vec::new(),
         extra,
     };
@@ -123,11 +142,11 @@ impl Fit {
             })
             .collect();
         self.reduced = all?;
-        self.solve(parameters)
+        self.solve(parameters, design.parameters.mixing.ncols())
     }
 
     /// Parameters and factors of effects, and the evidence.
-    fn solve(&mut self, parameters: usize) -> Option<()> {
+    fn solve(&mut self, parameters: usize, of_model: usize) -> Option<()> {
         let (means, sds) = self.prior();
         let (h, global) = (means.len(), 1 + parameters + means.len());
         let mut sum = DMatrix::zeros(global, global);
@@ -144,7 +163,8 @@ impl Fit {
         }
         let left = &sum * &shift;
         let squares = shift.dot(&left);
-        let scale: Vec<f64> = (0..parameters).map(|_| 1.0).chain(sds.iter().copied()).collect();
+        let size = |k: usize| if k < of_model { 1.0 } else { self.path };
+        let scale: Vec<f64> = (0..parameters).map(size).chain(sds.iter().copied()).collect();
         let n = parameters + h;
         let scaled = DMatrix::from_fn(n, n, |i, k| {
             scale[i] * scale[k] * sum[(1 + i, 1 + k)] + if i == k { 1.0 } else { 0.0 }

@@ -15,7 +15,7 @@ mod shares;
 mod sizes;
 
 pub use evidence::Evidence;
-pub use fit::{Fit, fitted};
+pub use fit::{Fit, fitted, fitted_as_written};
 pub use gain::Gains;
 pub use hypothesis::{Hypothesis, Member};
-pub use sizes::{JointSizes, Size, Sizes, usual, without_everyday};
+pub use sizes::{JointSizes, Size, Sizes, usual};

@@ -103,11 +103,11 @@ impl JointSizes {
 }
 
 /// Sizes of a model of the logs as they are now, without everyday errors: what it misses is error.
-#[must_use]
-pub fn without_everyday(design: &Design) -> Sizes {
+pub(super) fn without_everyday(design: &Design) -> Sizes {
     let mut all = usual(design);
     let fixed = |value: f64| Size { value, median: value, spread: NONE };
     for joint in &mut all {
+        joint.groups.push((Group::Fixed, fixed(NONE)));
         joint.groups.iter_mut().for_each(|(_, size)| *size = fixed(NONE));
         joint.error[3..6].fill(fixed(1.0 / NONE));
     }
