@@ -1,6 +1,7 @@
 //! `joulepath blind`: the sealed examination of `diagnose`.
 
 mod family;
+mod inject;
 
 use std::fmt::Write as _;
 use std::fs;
@@ -15,7 +16,9 @@ use serde_json::{Value, json};
 use self::family::family;
 use super::common::{self, Format};
 use super::{diagnose, output};
-use crate::examine::blind::{self, Asked, FAMILY, Grades, KEY, Label, SEALS, Sealed, Settings};
+use crate::examine::blind::{
+    self, Asked, Case, FAMILY, Grades, KEY, Label, SEALS, Sealed, Settings,
+};
 use crate::tool::report::html::grades_report;
 
 /// The sealed examination of diagnose: generate cases, grade their diagnoses.
@@ -32,6 +35,7 @@ pub(super) struct BlindArgs {
 #[derive(Debug, Subcommand)]
 enum BlindCommand {
     Generate(GenerateArgs),
+    Inject(inject::InjectArgs),
     Grade(GradeArgs),
 }
 
@@ -96,6 +100,7 @@ const PERIODS_S: [f64; 2] = [2.0, 60.0];
 pub(super) fn run(args: &BlindArgs) -> anyhow::Result<ExitCode> {
     match &args.command {
         BlindCommand::Generate(args) => generate(args),
+        BlindCommand::Inject(args) => inject::run(args),
         BlindCommand::Grade(args) => grade(args),
     }
 }
@@ -105,24 +110,36 @@ fn generate(args: &GenerateArgs) -> anyhow::Result<ExitCode> {
     if !(PERIODS_S[0]..=PERIODS_S[1]).contains(&args.period) {
         bail!("--period {}: give {} to {} s", args.period, PERIODS_S[0], PERIODS_S[1]);
     }
-    if out.join(KEY).exists() || out.join(SEALS).exists() {
-        bail!(
-            "'{}' has cases with seals already; name a new folder with --out, or remove that one",
-            out.display()
-        );
-    }
     let settings = Settings {
         cycles: args.cycles as usize,
         // A whole number of log rows.
         period_s: (args.period * 10.0).round() / 10.0,
         ..Settings::new(args.seed)
     };
-    let progress = common::progress(args.quiet, Some(u64::from(args.count)));
-    let labels: anyhow::Result<Vec<_>> = (1..=args.count as usize)
+    write_cases(out, args.count, args.quiet, |number| {
+        blind::case(&settings, number)
+            .context("the catalogue has none of the robots of the examination")
+    })
+}
+
+/// Writes the cases with the numbers 1 to `count` and their seals.
+fn write_cases(
+    out: &Path,
+    count: u32,
+    quiet: bool,
+    case: impl Fn(usize) -> anyhow::Result<Case> + Sync,
+) -> anyhow::Result<ExitCode> {
+    if out.join(KEY).exists() || out.join(SEALS).exists() {
+        bail!(
+            "'{}' has cases with seals already; name a new folder with --out, or remove that one",
+            out.display()
+        );
+    }
+    let progress = common::progress(quiet, Some(u64::from(count)));
+    let labels: anyhow::Result<Vec<_>> = (1..=count as usize)
         .into_par_iter()
         .map(|number| {
-            let case = blind::case(&settings, number)
-                .context("the catalogue has none of the robots of the examination")?;
+            let case = case(number)?;
             let files = case.files.iter().map(|(name, text)| (name, text));
             output::write_folder(&out.join(&case.name), files)?;
             progress.inc(1);
@@ -133,8 +150,8 @@ fn generate(args: &GenerateArgs) -> anyhow::Result<ExitCode> {
     output::write(&out.join(KEY), sealed.key.as_bytes())?;
     output::write(&out.join(SEALS), sealed.seals.as_bytes())?;
     progress.finish_and_clear();
-    let text = format!("{} cases in '{}', the truth sealed in {KEY}", args.count, out.display());
-    common::note(args.quiet, &text);
+    let text = format!("{count} cases in '{}', the truth sealed in {KEY}", out.display());
+    common::note(quiet, &text);
     Ok(ExitCode::SUCCESS)
 }
 
