@@ -23,9 +23,10 @@ const SHARES: [f64; 2] = [0.03, 0.15];
 const NEAR: f64 = 0.02;
 /// Steps of the search for a size.
 const STEPS: usize = 40;
-/// Least nats of an effect: more than the grades ask for.
-const VISIBLE_NATS: f64 = 15.0;
-/// Laws that are tried at a joint.
+/// Least nats of an effect: twice as many as the grades ask for.
+const VISIBLE_NATS: f64 = 20.0;
+/// Cuts that are tried for an effect, and laws at a joint.
+const CUTS: usize = 4;
 const TRIES: usize = 6;
 
 /// Cases of some robots.
@@ -45,14 +46,14 @@ impl Cases {
         if arms.is_empty() {
             return Err(InjectError::NoLogs);
         }
-        let stream = |purpose: &str| Random::new(seed, 0, purpose);
-        let cuts: Result<Vec<Cut>, InjectError> =
-            arms.iter().map(|arm| cut(arm, &mut stream("cut"))).collect();
-        let cuts = cuts?;
+        for arm in &arms {
+            cut(arm, &mut Random::new(seed, 0, "cut"))?;
+        }
         let shows = |entry: &Entry| {
-            let sees =
-                |k: &usize| visible(&arms[*k], &cuts[*k], entry, &mut stream(entry.id)).is_some();
-            (*entry, (0..arms.len()).filter(sees).collect::<Vec<usize>>())
+            let shows = |k: &usize| {
+                drawn(&arms[*k], entry, &mut Random::new(seed, *k as u64, entry.id)).is_some()
+            };
+            (*entry, (0..arms.len()).filter(shows).collect::<Vec<usize>>())
         };
         let mut seen: Vec<(Entry, Vec<usize>)> = EFFECTS.par_iter().map(shows).collect();
         seen.retain(|(_, robots)| !robots.is_empty());
@@ -76,8 +77,7 @@ impl Cases {
         let mut random = stream("effect");
         for (entry, robot) in self.order(place) {
             let arm = &self.arms[robot];
-            let cut = cut(arm, &mut stream("cut"))?;
-            if let Some(found) = visible(arm, &cut, &entry, &mut random) {
+            if let Some((cut, found)) = drawn(arm, &entry, &mut random) {
                 return Ok(sealed(arm, &cut, Some(found), &stream("salt"), number));
             }
         }
@@ -121,6 +121,15 @@ struct Added {
     torques: Vec<Joints>,
 }
 
+/// A cut of the log and an effect that can be seen in it; `None` if there is none among several.
+fn drawn(arm: &Arm, entry: &Entry, random: &mut Random) -> Option<(Cut, Added)> {
+    (0..CUTS).find_map(|_| {
+        let cut = Cut::drawn(arm, random)?;
+        let found = visible(arm, &cut, entry, random)?;
+        Some((cut, found))
+    })
+}
+
 /// An effect at a joint where it can be seen; `None` if there is no such joint.
 fn visible(arm: &Arm, cut: &Cut, entry: &Entry, random: &mut Random) -> Option<Added> {
     let mut joints: Vec<usize> = (0..arm.dof()).collect();
@@ -128,10 +137,10 @@ fn visible(arm: &Arm, cut: &Cut, entry: &Entry, random: &mut Random) -> Option<A
     let rows: Vec<usize> = cut.log.iter().flatten().copied().collect();
     for joint in joints {
         for _ in 0..TRIES {
-            let asked = random.log_between(SHARES[0], SHARES[1]);
+            let asked = random.unit();
             let Some(law) = (entry.draw)(arm, joint, random) else { continue };
             let Some((size, torques)) = sized(arm, &rows, &law, asked) else { continue };
-            let nats = nats(arm, &cut.log, entry.id, &torques);
+            let nats = nats(arm, &cut.log, &torques);
             if nats < VISIBLE_NATS {
                 continue;
             }
@@ -149,14 +158,17 @@ fn visible(arm: &Arm, cut: &Cut, entry: &Entry, random: &mut Random) -> Option<A
     None
 }
 
-/// The size with the share `asked` at the joints of the effect, or the usual size nearest to it, and
-/// its torques; `None` if no usual size has a share within the bounds at all joints.
+/// A usual size of an effect and its torques; `None` if no usual size has a share within the bounds.
+/// The place `asked` is from 0, the least possible share at the joints of the effect, to 1.
 fn sized(arm: &Arm, rows: &[usize], law: &Law<'_>, asked: f64) -> Option<(f64, Vec<Joints>)> {
     let share = |size: f64| law.share(&shares(arm, rows, &law.torques(size)));
     let [least, most] = law.sizes.map(share);
-    let asked = asked.clamp(least.min(most), most);
+    let (least, most) = (least.max(SHARES[0]), most.min(SHARES[1]));
+    if least >= most {
+        return None;
+    }
+    let asked = least * (most / least).powf(asked);
     let [mut low, mut high] = law.sizes.map(f64::ln);
-    // At the ends of the usual sizes the search ends there.
     for _ in 0..STEPS {
         let middle = f64::midpoint(low, high);
         let found = share(middle.exp());

@@ -13,6 +13,8 @@ const CUTS: usize = 64;
 /// Excitation of all parts at which a cut is taken, and the least one of the best cut.
 const EXCITED: f64 = 0.5;
 const LEAST: f64 = 0.2;
+/// Largest displacement of the border of a block, over its length.
+const UNEVEN: f64 = 0.15;
 
 /// Rows of the blocks in each part.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,12 +55,16 @@ impl Cut {
     fn of(rows: usize, count: usize, random: &mut Random) -> Cut {
         let mut parts = [const { Vec::new() }; 3];
         let blocks = 3 * count;
-        for round in 0..count {
+        let mut border = |block: usize| {
+            let moved = if block % blocks == 0 { 0.0 } else { random.between(-UNEVEN, UNEVEN) };
+            (rows as f64 * (block as f64 + moved) / blocks as f64) as usize
+        };
+        let borders: Vec<usize> = (0..=blocks).map(&mut border).collect();
+        for round in borders.windows(4).step_by(3) {
             let mut order = [0, 1, 2];
             random.shuffle(&mut order);
-            for (k, part) in order.into_iter().enumerate() {
-                let block = 3 * round + k;
-                parts[part].push((rows * block / blocks..rows * (block + 1) / blocks).collect());
+            for (part, ends) in order.into_iter().zip(round.windows(2)) {
+                parts[part].push((ends[0]..ends[1]).collect());
             }
         }
         let [baseline, log, heldout] = parts;

@@ -20,6 +20,8 @@ mod law;
 mod measurement;
 mod motion;
 mod series;
+#[cfg(test)]
+mod tests;
 mod transmission;
 mod visible;
 

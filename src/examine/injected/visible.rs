@@ -3,8 +3,7 @@
 //! The expected log-likelihood ratio in nats, `½ Δᵀ(Σ + B Bᵀ)⁻¹Δ`: Δ is what the effect adds, Σ the
 //! covariance of the robot's real residual, B has a column for each parameter of a commissioned
 //! robot times its standard deviation. The residual of a joint is a first-order autoregression of
-//! means over short intervals. Friction is free, unless the effect is its level: a law must differ
-//! from another level.
+//! means over short intervals.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -25,7 +24,7 @@ const FRICTION: f64 = 0.05;
 const OF_JOINT: usize = 3;
 
 /// Nats of the torques `added` in contiguous runs of rows.
-pub(super) fn nats(arm: &Arm, runs: &[Vec<usize>], id: &str, added: &[Joints]) -> f64 {
+pub(super) fn nats(arm: &Arm, runs: &[Vec<usize>], added: &[Joints]) -> f64 {
     let n = arm.dof();
     let columns = (RIGID + OF_JOINT) * n;
     let every = (STEP_S * (arm.motion.rows() - 1) as f64 / arm.motion.duration()).round().max(1.0);
@@ -33,7 +32,7 @@ pub(super) fn nats(arm: &Arm, runs: &[Vec<usize>], id: &str, added: &[Joints]) -
     let all: Vec<usize> = (0..arm.motion.rows()).collect();
     let noise = (0..n).map(|joint| Noise::of(&means(&all, every, &arm.residual, joint)));
     let noise: Vec<Noise> = noise.collect();
-    let deviations = deviations(arm, id == "friction_level");
+    let deviations = deviations(arm);
 
     let mut gram = DMatrix::<f64>::identity(columns, columns);
     let mut projected = DVector::<f64>::zeros(columns);
@@ -96,7 +95,7 @@ impl Noise {
 }
 
 /// Standard deviations of the parameters: of each link, then of each joint.
-fn deviations(arm: &Arm, is_friction_known: bool) -> Vec<f64> {
+fn deviations(arm: &Arm) -> Vec<f64> {
     let of_link = |link: &Link| {
         let moment = INERTIA * link.inertia.trace() / 3.0;
         let mut sd = [moment; RIGID];
@@ -104,18 +103,14 @@ fn deviations(arm: &Arm, is_friction_known: bool) -> Vec<f64> {
         sd[1..4].fill(COM_M * link.mass);
         sd
     };
-    let mut sd: Vec<f64> = arm.model.links.iter().flat_map(of_link).collect();
-    for joint in 0..arm.dof() {
-        let friction = &arm.model.friction;
+    let friction = &arm.model.friction;
+    let of_joint = |joint: usize| {
         let levels = [friction.coulomb[joint], friction.viscous[joint]];
-        let [dry, viscous] = if is_friction_known {
-            levels.map(|level| FRICTION * level)
-        } else {
-            [arm.rms[joint], arm.rms[joint] / arm.motion.rms_rate(joint)]
-        };
-        sd.extend([INERTIA * arm.rotor(joint), dry, viscous]);
-    }
-    sd
+        let [dry, viscous] = levels.map(|level| FRICTION * level);
+        [INERTIA * arm.rotor(joint), dry, viscous]
+    };
+    let links = arm.model.links.iter().flat_map(of_link);
+    links.chain((0..arm.dof()).flat_map(of_joint)).collect()
 }
 
 /// Torques at a row of each parameter at one standard deviation, a row for each joint \[Nm\].
