@@ -20,14 +20,14 @@ const GROUP: usize = 5;
 /// Least and largest rms torque of an effect over the measured one, at its largest joint.
 const SHARES: [f64; 2] = [0.03, 0.15];
 /// Accepted difference from the drawn share.
-const NEAR: f64 = 0.02;
+const NEAR: f64 = 0.005;
 /// Steps of the search for a size.
 const STEPS: usize = 40;
 /// Least nats of an effect: twice as many as the grades ask for.
 const VISIBLE_NATS: f64 = 20.0;
 /// Cuts that are tried for an effect, and laws at a joint.
 const CUTS: usize = 4;
-const TRIES: usize = 6;
+const TRIES: usize = 4;
 
 /// Cases of some robots.
 pub struct Cases {

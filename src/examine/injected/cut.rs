@@ -56,7 +56,8 @@ impl Cut {
         let mut parts = [const { Vec::new() }; 3];
         let blocks = 3 * count;
         let mut border = |block: usize| {
-            let moved = if block % blocks == 0 { 0.0 } else { random.between(-UNEVEN, UNEVEN) };
+            let moved =
+                if block.is_multiple_of(blocks) { 0.0 } else { random.between(-UNEVEN, UNEVEN) };
             (rows as f64 * (block as f64 + moved) / blocks as f64) as usize
         };
         let borders: Vec<usize> = (0..=blocks).map(&mut border).collect();

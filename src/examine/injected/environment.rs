@@ -2,6 +2,7 @@
 //!
 //! A. Klimchik et al., arXiv 1311.6674 (gravity compensators); R. Bouc 1967, Y.-K. Wen 1976
 //! (hysteresis).
+#![expect(clippy::unnecessary_wraps, reason = "the laws of all effects are drawn alike")]
 
 use std::f64::consts::{PI, TAU};
 

@@ -2,8 +2,9 @@
 //!
 //! B. Armstrong-Hélouvry, P. Dupont, C. Canudas de Wit, Automatica 30, 1994; C. Canudas de Wit,
 //! H. Olsson, K. J. Åström, P. Lischinsky, "A new model for control of systems with friction", IEEE
-//! T-AC 40, 1995 (LuGre); W. D. Iwan, "A distributed-element model for hysteresis", J. Appl. Mech.
+//! T-AC 40, 1995 (`LuGre`); W. D. Iwan, "A distributed-element model for hysteresis", J. Appl. Mech.
 //! 33, 1966.
+#![expect(clippy::unnecessary_wraps, reason = "the laws of all effects are drawn alike")]
 
 use std::f64::consts::{PI, TAU};
 
@@ -206,7 +207,7 @@ pub(super) fn position_friction<'a>(
     Some(law.with(move |size| vec![("amplitude", size, false), ("phase", centre, false)]))
 }
 
-/// Coulomb friction that builds up over a distance: bristles after LuGre, or elements after Iwan.
+/// Coulomb friction that builds up over a distance: bristles after `LuGre`, or elements after Iwan.
 pub(super) fn presliding<'a>(arm: &'a Arm, joint: usize, random: &mut Random) -> Option<Law<'a>> {
     let (form, name) = random.form(["lugre", "iwan"]);
     let coulomb = arm.model.friction.coulomb[joint];

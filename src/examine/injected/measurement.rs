@@ -1,4 +1,5 @@
 //! Errors of the measured torque.
+#![expect(clippy::unnecessary_wraps, reason = "the laws of all effects are drawn alike")]
 
 use std::f64::consts::TAU;
 

@@ -4,6 +4,7 @@
 //! P.-O. Gutman, "Controlling mechanical systems with backlash: a survey", Automatica 38, 2002;
 //! K. Hunt, F. Crossley, "Coefficient of restitution interpreted as damping in vibroimpact",
 //! J. Appl. Mech. 42, 1975.
+#![expect(clippy::unnecessary_wraps, reason = "the laws of all effects are drawn alike")]
 
 use std::f64::consts::TAU;
 
@@ -16,7 +17,7 @@ use crate::arm::robot::MAX_DOF;
 use crate::examine::blind::random::Random;
 
 /// Least and largest gap at a joint \[rad\].
-const GAPS: [f64; 2] = [1e-4, 0.01];
+const GAPS: [f64; 2] = [5e-4, 0.01];
 /// Natural frequencies of a soft joint \[Hz\].
 const FREQUENCIES_HZ: [f64; 2] = [5.0, 40.0];
 /// Largest frequency of a ripple at the usual rate \[Hz\], and over the rate of the rows.

@@ -1,5 +1,6 @@
 //! `joulepath blind`: the sealed examination of `diagnose`.
 
+mod cases;
 mod family;
 mod inject;
 
@@ -10,15 +11,13 @@ use std::process::ExitCode;
 
 use anyhow::{Context, bail};
 use clap::{Args, Subcommand};
-use rayon::prelude::*;
 use serde_json::{Value, json};
 
+use self::cases::write_cases;
 use self::family::family;
 use super::common::{self, Format};
 use super::{diagnose, output};
-use crate::examine::blind::{
-    self, Asked, Case, FAMILY, Grades, KEY, Label, SEALS, Sealed, Settings,
-};
+use crate::examine::blind::{self, Asked, FAMILY, Grades, KEY, Label, SEALS, Sealed, Settings};
 use crate::tool::report::html::grades_report;
 
 /// The sealed examination of diagnose: generate cases, grade their diagnoses.
@@ -120,39 +119,6 @@ fn generate(args: &GenerateArgs) -> anyhow::Result<ExitCode> {
         blind::case(&settings, number)
             .context("the catalogue has none of the robots of the examination")
     })
-}
-
-/// Writes the cases with the numbers 1 to `count` and their seals.
-fn write_cases(
-    out: &Path,
-    count: u32,
-    quiet: bool,
-    case: impl Fn(usize) -> anyhow::Result<Case> + Sync,
-) -> anyhow::Result<ExitCode> {
-    if out.join(KEY).exists() || out.join(SEALS).exists() {
-        bail!(
-            "'{}' has cases with seals already; name a new folder with --out, or remove that one",
-            out.display()
-        );
-    }
-    let progress = common::progress(quiet, Some(u64::from(count)));
-    let labels: anyhow::Result<Vec<_>> = (1..=count as usize)
-        .into_par_iter()
-        .map(|number| {
-            let case = case(number)?;
-            let files = case.files.iter().map(|(name, text)| (name, text));
-            output::write_folder(&out.join(&case.name), files)?;
-            progress.inc(1);
-            Ok((case.label, case.salt))
-        })
-        .collect();
-    let sealed = blind::seal(&labels?)?;
-    output::write(&out.join(KEY), sealed.key.as_bytes())?;
-    output::write(&out.join(SEALS), sealed.seals.as_bytes())?;
-    progress.finish_and_clear();
-    let text = format!("{count} cases in '{}', the truth sealed in {KEY}", out.display());
-    common::note(quiet, &text);
-    Ok(ExitCode::SUCCESS)
 }
 
 fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {

@@ -92,6 +92,8 @@ pub(super) struct DiagnoseArgs {
 
 /// Cut-off frequency of the filter for logged program runs \[Hz\].
 const RUN_CUTOFF_HZ: f64 = 10.0;
+/// Largest number of logs in a part of a case of `blind`.
+const MAX_LOGS: usize = 999;
 /// Redraw interval of the progress bar.
 const TICK: Duration = Duration::from_millis(200);
 
@@ -146,7 +148,7 @@ fn numbered(case: &Path, part: &str) -> Vec<PathBuf> {
         return vec![whole];
     }
     let file = |number: usize| case.join(format!("{part}-{number}.csv"));
-    (1..).map(file).take_while(|file| file.exists()).collect()
+    (1..=MAX_LOGS).map(file).take_while(|file| file.exists()).collect()
 }
 
 /// Refuses outputs that overwrite an input, and logs that are given twice or in two roles.

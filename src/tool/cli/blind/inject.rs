@@ -7,7 +7,7 @@ use anyhow::{Context, bail};
 use clap::Args;
 
 use super::super::{logs, output};
-use super::write_cases;
+use super::cases::write_cases;
 use crate::arm::effects;
 use crate::examine::injected::{Arm, Cases};
 use crate::learn::log::ColumnMap;
