@@ -110,8 +110,8 @@ pub(super) fn time_delay<'a>(arm: &'a Arm, _: usize, random: &mut Random) -> Opt
             // Held values are late by half of the bus cycle in the mean.
             _ => (t[row] / (2.0 * delay)).floor() * 2.0 * delay,
         };
-        changed(arm, |joint, measured| {
-            let late = |row: usize| linear_at(t, measured, taken(row)) - arm.tau[row][joint];
+        changed(arm, |torque| {
+            let late = |row: usize| linear_at(t, torque, taken(row)) - torque[row];
             (0..t.len()).map(late).collect()
         })
     };
@@ -126,26 +126,28 @@ pub(super) fn filter_lag<'a>(arm: &'a Arm, _: usize, random: &mut Random) -> Opt
     let torques = move |lag: f64| {
         let frequency = 2.0 * damping / lag;
         let longest = STEP_S.min(0.1 / frequency);
-        changed(arm, |joint, measured| {
-            let (mut y, mut rate) = (measured[0], 0.0);
-            let filtered = driven(&arm.motion.t, measured, longest, |h, input| {
+        changed(arm, |torque| {
+            let (mut y, mut rate) = (torque[0], 0.0);
+            let filtered = driven(&arm.motion.t, torque, longest, |h, input| {
                 rate += h * frequency * (frequency * (input - y) - 2.0 * damping * rate);
                 y += h * rate;
                 [y]
             });
-            filtered.iter().enumerate().map(|(row, [y])| y - arm.tau[row][joint]).collect()
+            filtered.iter().zip(torque).map(|([y], torque)| y - torque).collect()
         })
     };
     let law = Law::new("filter_lag", name, &[], DELAYS, torques);
     Some(law.with(|size| vec![("lag", size, false)]).like(&["time_delay"]))
 }
 
-/// The change of each joint's torque at the rows, from its measured torques.
-fn changed(arm: &Arm, change: impl Fn(usize, &[f64]) -> Vec<f64>) -> Vec<Joints> {
+/// The change of each joint's torque at the rows, from its torque of the model: the noise of the log
+/// stays, since a late noise is as likely as the noise itself.
+fn changed(arm: &Arm, change: impl Fn(&[f64]) -> Vec<f64>) -> Vec<Joints> {
     let mut all = vec![[0.0; MAX_DOF]; arm.tau.len()];
     for joint in 0..arm.dof() {
-        let measured: Vec<f64> = arm.tau.iter().map(|tau| tau[joint]).collect();
-        for (row, torque) in all.iter_mut().zip(change(joint, &measured)) {
+        let of_row = |(tau, left): (&Joints, &Joints)| tau[joint] - left[joint];
+        let torque: Vec<f64> = arm.tau.iter().zip(&arm.residual).map(of_row).collect();
+        for (row, torque) in all.iter_mut().zip(change(&torque)) {
             row[joint] = torque;
         }
     }
