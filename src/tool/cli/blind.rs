@@ -1,6 +1,8 @@
 //! `joulepath blind`: the sealed examination of `diagnose`.
 
+mod cases;
 mod family;
+mod inject;
 
 use std::fmt::Write as _;
 use std::fs;
@@ -9,9 +11,9 @@ use std::process::ExitCode;
 
 use anyhow::{Context, bail};
 use clap::{Args, Subcommand};
-use rayon::prelude::*;
 use serde_json::{Value, json};
 
+use self::cases::write_cases;
 use self::family::family;
 use super::common::{self, Format};
 use super::{diagnose, output};
@@ -32,6 +34,7 @@ pub(super) struct BlindArgs {
 #[derive(Debug, Subcommand)]
 enum BlindCommand {
     Generate(GenerateArgs),
+    Inject(inject::InjectArgs),
     Grade(GradeArgs),
 }
 
@@ -96,6 +99,7 @@ const PERIODS_S: [f64; 2] = [2.0, 60.0];
 pub(super) fn run(args: &BlindArgs) -> anyhow::Result<ExitCode> {
     match &args.command {
         BlindCommand::Generate(args) => generate(args),
+        BlindCommand::Inject(args) => inject::run(args),
         BlindCommand::Grade(args) => grade(args),
     }
 }
@@ -105,37 +109,16 @@ fn generate(args: &GenerateArgs) -> anyhow::Result<ExitCode> {
     if !(PERIODS_S[0]..=PERIODS_S[1]).contains(&args.period) {
         bail!("--period {}: give {} to {} s", args.period, PERIODS_S[0], PERIODS_S[1]);
     }
-    if out.join(KEY).exists() || out.join(SEALS).exists() {
-        bail!(
-            "'{}' has cases with seals already; name a new folder with --out, or remove that one",
-            out.display()
-        );
-    }
     let settings = Settings {
         cycles: args.cycles as usize,
         // A whole number of log rows.
         period_s: (args.period * 10.0).round() / 10.0,
         ..Settings::new(args.seed)
     };
-    let progress = common::progress(args.quiet, Some(u64::from(args.count)));
-    let labels: anyhow::Result<Vec<_>> = (1..=args.count as usize)
-        .into_par_iter()
-        .map(|number| {
-            let case = blind::case(&settings, number)
-                .context("the catalogue has none of the robots of the examination")?;
-            let files = case.files.iter().map(|(name, text)| (name, text));
-            output::write_folder(&out.join(&case.name), files)?;
-            progress.inc(1);
-            Ok((case.label, case.salt))
-        })
-        .collect();
-    let sealed = blind::seal(&labels?)?;
-    output::write(&out.join(KEY), sealed.key.as_bytes())?;
-    output::write(&out.join(SEALS), sealed.seals.as_bytes())?;
-    progress.finish_and_clear();
-    let text = format!("{} cases in '{}', the truth sealed in {KEY}", args.count, out.display());
-    common::note(args.quiet, &text);
-    Ok(ExitCode::SUCCESS)
+    write_cases(out, args.count, args.quiet, |number| {
+        blind::case(&settings, number)
+            .context("the catalogue has none of the robots of the examination")
+    })
 }
 
 fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {

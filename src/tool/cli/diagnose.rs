@@ -97,6 +97,8 @@ pub(super) struct DiagnoseArgs {
 
 /// Cut-off frequency of the filter for logged program runs \[Hz\].
 const RUN_CUTOFF_HZ: f64 = 10.0;
+/// Largest number of logs in a part of a case of `blind`.
+const MAX_LOGS: usize = 999;
 /// Redraw interval of the progress bar.
 const TICK: Duration = Duration::from_millis(200);
 
@@ -121,7 +123,7 @@ pub(super) fn run(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
     Ok(if found.verdict == Verdict::NoGap { ExitCode::SUCCESS } else { ExitCode::from(1) })
 }
 
-/// The JSON of a case of `blind generate`, diagnosed without some effects; without omissions, the
+/// The JSON of a case of `blind`, diagnosed without some effects; without omissions, the
 /// model is written too.
 pub(super) fn diagnose_case(
     case: &Path,
@@ -129,12 +131,11 @@ pub(super) fn diagnose_case(
     without: &[&str],
 ) -> anyhow::Result<Value> {
     let text = |key: &str| options.get(key).and_then(Value::as_str);
-    let baseline = case.join("baseline-1.csv");
     let args = DiagnoseArgs {
         robot: case.join("nominal.toml").display().to_string(),
-        log: vec![case.join("log-1.csv"), case.join("log-2.csv")],
-        heldout: vec![case.join("heldout.csv")],
-        baseline: if baseline.exists() { vec![baseline] } else { Vec::new() },
+        log: numbered(case, "log"),
+        heldout: numbered(case, "heldout"),
+        baseline: numbered(case, "baseline"),
         program: text("program").map(|folder| case.join(folder)),
         trust: text("trust").and_then(|trust| TrustArg::from_str(trust, true).ok()),
         effects: (!without.is_empty()).then(|| format!("-{}", without.join(","))),
@@ -148,6 +149,16 @@ pub(super) fn diagnose_case(
     };
     let (found, basis) = run_diagnosis(&args)?;
     Ok(report::json(&found, &basis))
+}
+
+/// The logs of a part of a case: `log.csv` or `log-1.csv`, `log-2.csv`, …
+fn numbered(case: &Path, part: &str) -> Vec<PathBuf> {
+    let whole = case.join(format!("{part}.csv"));
+    if whole.exists() {
+        return vec![whole];
+    }
+    let file = |number: usize| case.join(format!("{part}-{number}.csv"));
+    (1..=MAX_LOGS).map(file).take_while(|file| file.exists()).collect()
 }
 
 /// Refuses outputs that overwrite an input, and logs that are given twice or in two roles.
