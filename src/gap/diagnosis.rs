@@ -1,11 +1,13 @@
 //! What a diagnosis says.
 
+use crate::arm::robot::Model;
+
 use super::calibration::asserted;
 use super::findings::{Anything, Place, Said, Verdict};
 use super::heldout::Shrink;
 use super::improved::Improved;
+use super::motion::RunFound;
 use super::power::PowerFound;
-use super::runs::RunFound;
 
 /// Effects of what measures torques, not of the torques.
 const OF_MEASUREMENT: [&str; 9] = [
@@ -52,6 +54,26 @@ pub struct Diagnosis {
 }
 
 impl Diagnosis {
+    /// Of a robot whose torques are not logged.
+    #[must_use]
+    pub fn without_torques(model: &Model) -> Diagnosis {
+        Diagnosis {
+            verdict: Verdict::NoGap,
+            effects: Vec::new(),
+            candidates: Vec::new(),
+            anything: Vec::new(),
+            places: Vec::new(),
+            shrink: Shrink::default(),
+            error: 0.0,
+            chance: 0.0,
+            refit: Improved::same(model),
+            improved: Improved::same(model),
+            reasons: Vec::new(),
+            channels: Vec::new(),
+            before: None,
+        }
+    }
+
     /// What the power says is a part of it.
     pub fn add_power(&mut self, found: &PowerFound) {
         // Torques that are wrong make wrong powers.
@@ -95,6 +117,9 @@ impl Diagnosis {
         }
         self.channels.push(("motion", "s", found.gap));
         self.add(!found.effects.is_empty(), found.is_unknown);
+        if self.verdict == Verdict::Effect && found.is_ambiguous() {
+            self.verdict = Verdict::NotSeparable;
+        }
     }
 
     fn add(&mut self, has_effect: bool, is_unknown: bool) {

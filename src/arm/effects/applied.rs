@@ -70,7 +70,7 @@ pub fn applied(mut model: Model) -> Result<Model, RobotError> {
                     let values = padded(&coordinates);
                     model.laws.push(Law { joint, values, dissipates, torque });
                 }
-                Form::Series(_) | Form::Elsewhere => {}
+                Form::Series(_) | Form::Timing(_) | Form::Elsewhere => {}
             }
             if effect.scope == Scope::Robot {
                 break;

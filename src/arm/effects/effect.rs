@@ -87,8 +87,25 @@ pub enum Form {
     },
     /// Torques per joint that depend on the whole motion.
     Series(OfMotion),
+    /// Another motion.
+    Timing(Timing),
     /// No change of torques.
     Elsewhere,
+}
+
+/// What an effect changes of the motion of a program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Timing {
+    /// When the robot is where it was told to be.
+    Lag,
+    /// How far it cuts corners between targets.
+    Blending,
+    /// How fast it accelerates.
+    Acceleration,
+    /// How fast it moves.
+    Speed,
+    /// How long it rests between two movements.
+    Wait,
 }
 
 /// An effect: its law, its prior and its documentation.
@@ -173,7 +190,7 @@ impl Effect {
                 if dissipates { motion.at_joints(joint, series) } else { vec![(joint, series)] }
             }
             Form::Series(added) => added(motion, joint, coordinates),
-            Form::Elsewhere => Vec::new(),
+            Form::Timing(_) | Form::Elsewhere => Vec::new(),
         }
     }
 }

@@ -45,5 +45,5 @@ pub use motion::Motion;
 pub use periods::{Periods, find_periods};
 pub use read::{read, read_from};
 pub use three_phase::{Signed, Vectors, coherence, signed, vectors};
-pub use time_shift::{Delay, Shift, between_grid, downhill, golden_section, on_grid, vertex};
+pub use time_shift::{Shift, between_grid, downhill, golden_section, on_grid, vertex};
 pub use uniform::{Section, interpolated, median_step, quantile, range, sections};

@@ -1,8 +1,7 @@
 //! Time shift between two signals that minimises a misfit.
 //!
 //! The caller defines the misfit: torques with the motion of a refitted model, phase currents with
-//! the rotor, torques with a model with effects, a motion with itself a period later. For two
-//! smooth signals of the same quantity, [`Delay`] gives a least-squares estimate without a search.
+//! the rotor, torques with a model with effects, a motion with itself a period later.
 
 /// Ratio of the golden section.
 const GOLDEN: f64 = 0.618_033_988_749_895;
@@ -103,32 +102,6 @@ pub fn golden_section(
     0.5 * (low + high)
 }
 
-/// Common delay of sampled signals relative to their references: least squares, linear in the
-/// delay, which has to be short compared with the changes of the signals.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Delay {
-    squares: f64,
-    products: f64,
-}
-
-impl Delay {
-    /// Adds a signal and its reference, both sampled every `step` \[s\].
-    pub fn add(&mut self, reference: &[f64], signal: &[f64], step: f64) {
-        let samples = reference.len().min(signal.len());
-        for k in 1..samples.saturating_sub(1) {
-            let rate = (reference[k + 1] - reference[k - 1]) / (2.0 * step);
-            self.squares += rate * rate;
-            self.products -= rate * (signal[k] - reference[k]);
-        }
-    }
-
-    /// The delay \[s\]; `None` without motion.
-    #[must_use]
-    pub fn seconds(&self) -> Option<f64> {
-        (self.squares > 0.0).then(|| self.products / self.squares)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
@@ -158,11 +131,5 @@ mod tests {
         assert_eq!(downhill(3, |k| Some(misfit(STEP * k as f64))), None);
         let near = [coarse.shift - 0.1, coarse.shift + 0.1];
         assert!((golden_section(near, 24, misfit) - LATE).abs() < 1e-5);
-        let of = |late: f64| -> Vec<f64> {
-            (0..300).map(|i| signal(STEP * f64::from(i) - late)).collect()
-        };
-        let mut delay = Delay::default();
-        delay.add(&of(0.0), &of(0.1 * LATE), STEP);
-        assert!((delay.seconds().unwrap() - 0.1 * LATE).abs() < 1e-4);
     }
 }

@@ -1,6 +1,7 @@
 //! `joulepath diagnose`: which effect separates a model from its robot.
 
 mod channels;
+mod motion;
 mod pictures;
 
 use std::path::{Path, PathBuf};
@@ -14,7 +15,7 @@ use serde_json::Value;
 
 use super::common::{self, Format};
 use super::input::{self, Input};
-use super::logs::{PreparedLog, RawLog, Reader, held_out, read_all};
+use super::logs::{PreparedLog, RawLog, Reader, held_out, read_all, refuse_same};
 use super::output::{self, is_same_file};
 use crate::arm::effects::{self, ALL, Effect};
 use crate::arm::robot::{Model, Use, nearest, ready, to_toml};
@@ -185,7 +186,11 @@ fn run_diagnosis(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basi
         None if args.baseline.is_empty() => Trust::Cad,
         Some(TrustArg::Commissioned) | None => Trust::Commissioned,
     };
-    let Data { train, held, baseline, heldout, notes } = read_data(args, &model, &map, trust)?;
+    let raw = read_all(&args.log, &map, &model)?;
+    if motion::is_alone(&raw) {
+        return diagnose_motion(args, &model, &map, raw, &wanted);
+    }
+    let Data { train, held, baseline, heldout, notes } = read_data(args, &model, &map, raw, trust)?;
     // These notes were already shown during reading.
     let shown = notes.len();
     let mut basis = report::Basis {
@@ -195,16 +200,12 @@ fn run_diagnosis(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basi
         notes,
         ..report::Basis::default()
     };
-    let lines = match &args.program {
-        Some(program) => channels::lines(program, &args.robot)
-            .with_context(|| format!("--program {}", program.display()))?,
-        None => Vec::new(),
-    };
+    let lines = channels::lines(args.program.as_deref(), &args.robot)?;
     let may = |id: &str| wanted.iter().any(|effect| effect.id == id);
     let [before, now, graded] = [&baseline, &train, &held].map(|logs| channels::powers(logs));
     let of_power = diagnose_power(&model, &before, &now, &graded, &may);
     let [before, now, graded] = [&baseline, &train, &held].map(|logs| channels::runs(logs));
-    let of_runs = diagnose_runs(&model, &before, &now, &graded, &may);
+    let of_runs = diagnose_runs(&before, &now, &graded, &may);
     // Checks that the outputs are writable before the long search.
     for path in args.out.iter().chain(&args.report) {
         output::stage(path, &[])?;
@@ -225,11 +226,7 @@ fn run_diagnosis(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basi
         found.add_power(of);
     }
     if let Some(of) = &of_runs {
-        found.add_runs(of);
-        for place in &mut found.places {
-            let movement = place.movement.and_then(|movement| movement.checked_sub(1));
-            place.line = movement.and_then(|movement| lines.get(movement).cloned());
-        }
+        channels::add_runs(&mut found, of, &lines);
     } else if args.program.is_some() {
         basis.notes.push(
             "--program tells nothing of these logs: give logs and a --baseline whose column `cmd` has \
@@ -240,6 +237,54 @@ fn run_diagnosis(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basi
     let graded = if held.is_empty() { &train } else { &held };
     write(args, &model, graded, &found, &mut basis)?;
     common::notes(args.quiet, &basis.notes[shown..]);
+    Ok((found, basis))
+}
+
+/// The motion alone of logs without torques.
+fn diagnose_motion(
+    args: &DiagnoseArgs,
+    model: &Model,
+    map: &ColumnMap,
+    raw: Vec<RawLog>,
+    wanted: &[&'static Effect],
+) -> anyhow::Result<(Diagnosis, report::Basis)> {
+    let shown = args.log[0].display();
+    if args.baseline.is_empty() {
+        bail!(
+            "--log {shown}: no torques are logged, and a motion alone is compared with that of a \
+             baseline; give --baseline with a log of the same program from when the robot was right, \
+             or logs with tau1… or i1…"
+        );
+    }
+    let mut reader = Reader { model, quiet: args.quiet, notes: Vec::new() };
+    let logs = [raw, read_all(&args.heldout, map, model)?, read_all(&args.baseline, map, model)?];
+    let motion::Logged { now, held, before, heldout, graded } = motion::logged(&mut reader, logs)?;
+    let lines = channels::lines(args.program.as_deref(), &args.robot)?;
+    for path in args.out.iter().chain(&args.report) {
+        output::stage(path, &[])?;
+    }
+    let may = |id: &str| wanted.iter().any(|effect| effect.id == id);
+    let of_runs = diagnose_runs(&before, &now, &held, &may).with_context(|| {
+        format!(
+            "--log {shown}: its movements are not those of the baseline; give logs in which the same \
+             program runs at least twice, with the number of the movement as cmd"
+        )
+    })?;
+    let mut found = Diagnosis::without_torques(model);
+    channels::add_runs(&mut found, &of_runs, &lines);
+    let mut basis = report::Basis {
+        robot: args.robot.clone(),
+        heldout: heldout.to_owned(),
+        graded,
+        notes: reader.notes,
+        ..report::Basis::default()
+    };
+    common::note_once(
+        args.quiet,
+        &mut basis.notes,
+        "no torques are logged: only the motion was compared".to_owned(),
+    );
+    write(args, model, &[], &found, &mut basis)?;
     Ok((found, basis))
 }
 
@@ -256,30 +301,24 @@ fn read_data(
     args: &DiagnoseArgs,
     model: &Model,
     map: &ColumnMap,
+    raw: Vec<RawLog>,
     trust: Trust,
 ) -> anyhow::Result<Data> {
     let mut reader = Reader { model, quiet: args.quiet, notes: Vec::new() };
-    let mut read = |paths: &[PathBuf]| -> anyhow::Result<Vec<PreparedLog>> {
+    let mut prepared = |raw: Vec<RawLog>| -> anyhow::Result<Vec<PreparedLog>> {
         let one = |read: RawLog| {
             // Repetitions of a program are never equal to the millisecond.
             let is_run = read.log.column(Channel::Command).is_some();
             let cutoff = is_run.then_some(RUN_CUTOFF_HZ);
             reader.prepared(read, Hints { period: args.period, cutoff })
         };
-        read_all(paths, map, model)?.into_iter().map(one).collect()
+        raw.into_iter().map(one).collect()
     };
-    let mut train = read(&args.log)?;
-    let mut held = read(&args.heldout)?;
-    for other in &held {
-        if let Some(same) = train.iter().find(|of| of.record.hash == other.record.hash) {
-            bail!(
-                "--heldout {}: the same log as --log {}; give one that takes no part there, or leave \
-                 --heldout out",
-                other.record.path,
-                same.record.path
-            );
-        }
-    }
+    let mut train = prepared(raw)?;
+    let mut held = prepared(read_all(&args.heldout, map, model)?)?;
+    let [now, others] =
+        [&train, &held].map(|logs| logs.iter().map(|of| &of.record).collect::<Vec<_>>());
+    refuse_same(&now, &others)?;
     let heldout = if !held.is_empty() {
         "file"
     } else if train.len() > 1 {
@@ -296,7 +335,7 @@ fn read_data(
              at the joints, currents as i1… in A, or the --robot that was logged"
         );
     }
-    let baseline = read(&args.baseline)?;
+    let baseline = prepared(read_all(&args.baseline, map, model)?)?;
     Ok(Data { train, held, baseline, heldout, notes: reader.notes })
 }
 

@@ -17,7 +17,7 @@ use crate::learn::log::{self, Channel, ColumnMap, Log, MIN_ROWS, Rejected, align
 use crate::tool::report::identify::LogRecord;
 
 /// Share of a single log that is held out.
-const HELD_OUT: f64 = 0.3;
+pub(super) const HELD_OUT: f64 = 0.3;
 /// With at most this many repetitions, none is held out as a whole.
 const MIN_CYCLES: usize = 3;
 
@@ -31,6 +31,14 @@ pub(super) struct RawLog {
     pub(super) log: Log,
     /// Quality of the synchronisation of its two halves, if it has two.
     clocks: Option<String>,
+}
+
+/// A log whose positions are plausible.
+pub(super) struct CheckedLog {
+    /// The record of its origin.
+    pub(super) record: LogRecord,
+    /// The valid rows.
+    pub(super) log: Log,
 }
 
 /// A log prepared for use.
@@ -65,6 +73,34 @@ impl Reader<'_> {
     /// Checks a log and extracts its samples.
     pub(super) fn prepared(&mut self, read: RawLog, hints: Hints) -> anyhow::Result<PreparedLog> {
         let model = self.model;
+        let CheckedLog { record, log } = self.checked(read)?;
+        let shown = record.path.clone();
+        let torque = torques(model, &log).with_context(|| shown.clone())?;
+        check_torques(model, &log, &torque.tau).with_context(|| shown.clone())?;
+        let weight = weight_factor(model, &log, &torque.tau);
+        let strange = weight.map(|(factor, joint)| weight_note(factor, joint));
+        for text in strange.into_iter().chain(torque.notes) {
+            self.tell(format!("{shown}: {text}"));
+        }
+        if let Some(text) = unused_columns_note(&log) {
+            self.tell(format!("{shown}: {text}"));
+        }
+        let samples = prepare(&log, &torque.tau, hints).with_context(|| shown.clone())?;
+        if let Some(text) = period_note(hints.period, &samples.source) {
+            self.tell(format!("{shown}: {text}"));
+        }
+        Ok(PreparedLog {
+            record,
+            samples,
+            origin: torque.origin,
+            log,
+            weight: weight.map(|(factor, _)| factor),
+        })
+    }
+
+    /// Checks what a log says of the positions.
+    pub(super) fn checked(&mut self, read: RawLog) -> anyhow::Result<CheckedLog> {
+        let model = self.model;
         let RawLog { shown, hash, log, clocks } = read;
         check_joints(&shown, &log, model)?;
         let (log, impossible) = cleaned(&log);
@@ -91,30 +127,10 @@ impl Reader<'_> {
                 model.name
             ));
         }
-        let torque = torques(model, &log).with_context(|| shown.clone())?;
-        check_torques(model, &log, &torque.tau).with_context(|| shown.clone())?;
-        let weight = weight_factor(model, &log, &torque.tau);
-        let strange = weight.map(|(factor, joint)| weight_note(factor, joint));
-        for text in clocks.into_iter().chain(strange) {
+        if let Some(text) = clocks {
             self.tell(format!("{shown}: {text}"));
         }
-        for text in torque.notes {
-            self.tell(format!("{shown}: {text}"));
-        }
-        if let Some(text) = unused_columns_note(&log) {
-            self.tell(format!("{shown}: {text}"));
-        }
-        let samples = prepare(&log, &torque.tau, hints).with_context(|| shown.clone())?;
-        if let Some(text) = period_note(hints.period, &samples.source) {
-            self.tell(format!("{shown}: {text}"));
-        }
-        Ok(PreparedLog {
-            record: LogRecord { path: shown, hash, rows: usable, left_out },
-            samples,
-            origin: torque.origin,
-            log,
-            weight: weight.map(|(factor, _)| factor),
-        })
+        Ok(CheckedLog { record: LogRecord { path: shown, hash, rows: usable, left_out }, log })
     }
 }
 
@@ -125,6 +141,24 @@ pub(super) fn check_joints(shown: &str, log: &Log, model: &Model) -> anyhow::Res
         bail!(
             "{shown}: positions of {joints} joints are logged, {name} has {dof}; give a log with q1 to \
              q{dof}, or another --robot"
+        );
+    }
+    Ok(())
+}
+
+/// Refuses a held-out log with the content of another one.
+///
+/// # Errors
+/// There is one.
+pub(super) fn refuse_same(train: &[&LogRecord], held: &[&LogRecord]) -> anyhow::Result<()> {
+    let pairs = held.iter().flat_map(|held| train.iter().map(move |of| (held, of)));
+    let mut same = pairs.filter(|(held, of)| held.hash == of.hash);
+    if let Some((held, same)) = same.next() {
+        bail!(
+            "--heldout {}: the same log as --log {}; give one that takes no part there, or leave \
+             --heldout out",
+            held.path,
+            same.path
         );
     }
     Ok(())

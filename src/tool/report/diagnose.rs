@@ -75,14 +75,17 @@ fn gap(found: &Diagnosis, basis: &Basis) -> Vec<Value> {
             "refit_plus_effect": of.refit_plus_effect,
         })
     });
-    let mut gap = vec![json!({
-        "channel": "torque",
-        "unit": "Nm",
-        "per_joint": joints.collect::<Vec<_>>(),
-        "heldout": basis.heldout,
-        "shrink_percent": interval(&found.shrink.total),
-        "shrink_by_effect_percent": interval(&found.shrink.by_effect),
-    })];
+    let torque = (!found.shrink.joints.is_empty()).then(|| {
+        json!({
+            "channel": "torque",
+            "unit": "Nm",
+            "per_joint": joints.collect::<Vec<_>>(),
+            "heldout": basis.heldout,
+            "shrink_percent": interval(&found.shrink.total),
+            "shrink_by_effect_percent": interval(&found.shrink.by_effect),
+        })
+    });
+    let mut gap: Vec<Value> = torque.into_iter().collect();
     for (name, unit, [noise, before, after]) in &found.channels {
         let shrinks = if *before > 0.0 { 100.0 * (1.0 - after / before) } else { 0.0 };
         gap.push(json!({
@@ -230,31 +233,7 @@ pub fn text(found: &Diagnosis, basis: &Basis) -> String {
     for reason in &found.reasons {
         let _ = writeln!(out, "not asserted: {reason}");
     }
-    let _ = writeln!(
-        out,
-        "\nheld-out {}, rms Nm\njoint     noise     model     refit   +effect",
-        basis.heldout
-    );
-    for (joint, of) in found.shrink.joints.iter().enumerate() {
-        let _ = writeln!(
-            out,
-            "{:>5} {:>9.4} {:>9.4} {:>9.4} {:>9.4}",
-            joint + 1,
-            of.noise,
-            of.model,
-            of.refit,
-            of.refit_plus_effect
-        );
-    }
-    for (name, of) in [("all", &found.shrink.total), ("by effect", &found.shrink.by_effect)] {
-        let [value, low, high] = [of.value, of.low, of.high].map(|x| 100.0 * x);
-        let _ = if value < 0.0 {
-            let [value, low, high] = [-value, -high, -low];
-            writeln!(out, "the gap grows, {name}: {value:.1} % ({low:.1} to {high:.1})")
-        } else {
-            writeln!(out, "the gap shrinks, {name}: {value:.1} % ({low:.1} to {high:.1})")
-        };
-    }
+    shrinks(&mut out, found, basis);
     if let Some(Experiment { why, command }) = next(found, basis) {
         let _ = writeln!(out, "next: {why}\n  {command}");
     }
@@ -262,4 +241,42 @@ pub fn text(found: &Diagnosis, basis: &Basis) -> String {
         let _ = writeln!(out, "model: {}", basis.model);
     }
     out
+}
+
+/// How far the gap shrinks on the held-out logs, as text.
+fn shrinks(out: &mut String, found: &Diagnosis, basis: &Basis) {
+    if !found.shrink.joints.is_empty() {
+        let _ = writeln!(
+            out,
+            "\nheld-out {}, rms Nm\njoint     noise     model     refit   +effect",
+            basis.heldout
+        );
+        for (joint, of) in found.shrink.joints.iter().enumerate() {
+            let _ = writeln!(
+                out,
+                "{:>5} {:>9.4} {:>9.4} {:>9.4} {:>9.4}",
+                joint + 1,
+                of.noise,
+                of.model,
+                of.refit,
+                of.refit_plus_effect
+            );
+        }
+        for (name, of) in [("all", &found.shrink.total), ("by effect", &found.shrink.by_effect)] {
+            let [value, low, high] = [of.value, of.low, of.high].map(|x| 100.0 * x);
+            let _ = if value < 0.0 {
+                let [value, low, high] = [-value, -high, -low];
+                writeln!(out, "the gap grows, {name}: {value:.1} % ({low:.1} to {high:.1})")
+            } else {
+                writeln!(out, "the gap shrinks, {name}: {value:.1} % ({low:.1} to {high:.1})")
+            };
+        }
+    }
+    for (name, unit, [noise, before, after]) in &found.channels {
+        let _ = writeln!(
+            out,
+            "\nheld-out {}, {name}, rms {unit}: noise {noise:.4}, before {before:.4}, after {after:.4}",
+            basis.heldout
+        );
+    }
 }

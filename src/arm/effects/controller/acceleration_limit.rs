@@ -1,6 +1,6 @@
 //! Acceleration that is higher or lower.
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, bounded};
+use crate::arm::effects::effect::{Channel, Effect, Form, Scope, Timing, bounded};
 
 pub(in crate::arm::effects) const ACCELERATION_LIMIT: Effect = Effect {
     id: "acceleration_limit",
@@ -16,5 +16,5 @@ pub(in crate::arm::effects) const ACCELERATION_LIMIT: Effect = Effect {
     brings: &[],
     confused: &["speed_limit"],
     experiment: ["", "the same program again, logged with `line` or `cmd`"],
-    form: Form::Elsewhere,
+    form: Form::Timing(Timing::Acceleration),
 };

@@ -1,6 +1,6 @@
 //! A wait that is not in the model.
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, free};
+use crate::arm::effects::effect::{Channel, Effect, Form, Scope, Timing, free};
 
 pub(in crate::arm::effects) const PROGRAM_WAIT: Effect = Effect {
     id: "program_wait",
@@ -16,5 +16,5 @@ pub(in crate::arm::effects) const PROGRAM_WAIT: Effect = Effect {
     brings: &[],
     confused: &["acceleration_limit"],
     experiment: ["", "the same program again, logged with `line` or `cmd`"],
-    form: Form::Elsewhere,
+    form: Form::Timing(Timing::Wait),
 };

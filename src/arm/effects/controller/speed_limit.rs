@@ -1,6 +1,6 @@
 //! Speed that is limited.
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, bounded};
+use crate::arm::effects::effect::{Channel, Effect, Form, Scope, Timing, bounded};
 
 pub(in crate::arm::effects) const SPEED_LIMIT: Effect = Effect {
     id: "speed_limit",
@@ -16,5 +16,5 @@ pub(in crate::arm::effects) const SPEED_LIMIT: Effect = Effect {
     brings: &[],
     confused: &["acceleration_limit"],
     experiment: ["", "the same program again, logged with `line` or `cmd`"],
-    form: Form::Elsewhere,
+    form: Form::Timing(Timing::Speed),
 };

@@ -1,6 +1,6 @@
 //! Lag of the servos.
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, free};
+use crate::arm::effects::effect::{Channel, Effect, Form, Scope, Timing, free};
 
 pub(in crate::arm::effects) const TRACKING_LAG: Effect = Effect {
     id: "tracking_lag",
@@ -16,5 +16,5 @@ pub(in crate::arm::effects) const TRACKING_LAG: Effect = Effect {
     brings: &[],
     confused: &["zone_blending"],
     experiment: ["", "the same program again, logged with `line` or `cmd`"],
-    form: Form::Elsewhere,
+    form: Form::Timing(Timing::Lag),
 };

@@ -1,6 +1,6 @@
 //! Corners that are cut more or less.
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, bounded};
+use crate::arm::effects::effect::{Channel, Effect, Form, Scope, Timing, bounded};
 
 pub(in crate::arm::effects) const ZONE_BLENDING: Effect = Effect {
     id: "zone_blending",
@@ -16,5 +16,5 @@ pub(in crate::arm::effects) const ZONE_BLENDING: Effect = Effect {
     brings: &[],
     confused: &["acceleration_limit"],
     experiment: ["", "the same program again, logged with `line` or `cmd`"],
-    form: Form::Elsewhere,
+    form: Form::Timing(Timing::Blending),
 };

@@ -2,11 +2,13 @@
 
 use std::path::Path;
 
+use anyhow::Context;
+
 use super::super::common::{self, CellArgs, ProgramArgs};
 use super::super::logs::PreparedLog;
-use crate::gap::{Powers, Run};
+use crate::gap::{Diagnosis, Powers, Run, RunFound};
 use crate::learn::identify::Source;
-use crate::learn::log::Channel;
+use crate::learn::log::{Channel, Log};
 use crate::retime::motion::simulate;
 use crate::retime::motion::timeline::{MoveRecord, What};
 use crate::tool::report::place::Places;
@@ -45,21 +47,39 @@ fn power(log: &PreparedLog) -> Option<Powers> {
 
 /// Program runs in logs that mark the movements.
 pub(super) fn runs(logs: &[PreparedLog]) -> Vec<Run> {
-    logs.iter()
-        .filter_map(|log| {
-            let command = log.log.column(Channel::Command)?;
-            let q = log.log.of_joints(Channel::Position)?;
-            Some(Run {
-                t: log.log.time().to_vec(),
-                q: q.into_iter().map(<[f64]>::to_vec).collect(),
-                command: command.iter().map(|x| x.max(0.0).round() as usize).collect(),
-            })
-        })
-        .collect()
+    logs.iter().filter_map(|log| run(&log.log)).collect()
 }
 
-/// File and line of each movement of a program.
-pub(super) fn lines(program: &Path, robot: &str) -> anyhow::Result<Vec<(String, usize)>> {
+/// The program run in a log; `None` if it does not mark the movements.
+pub(super) fn run(log: &Log) -> Option<Run> {
+    let command = log.column(Channel::Command)?;
+    let q = log.of_joints(Channel::Position)?;
+    Some(Run {
+        t: log.time().to_vec(),
+        q: q.into_iter().map(<[f64]>::to_vec).collect(),
+        command: command.iter().map(|x| x.max(0.0).round() as usize).collect(),
+    })
+}
+
+/// File and line of a movement.
+pub(super) type ProgramLine = (String, usize);
+
+/// Adds what runs show, with the lines of the movements.
+pub(super) fn add_runs(found: &mut Diagnosis, of: &RunFound, lines: &[ProgramLine]) {
+    found.add_runs(of);
+    for place in &mut found.places {
+        let movement = place.movement.and_then(|movement| movement.checked_sub(1));
+        place.line = movement.and_then(|movement| lines.get(movement).cloned());
+    }
+}
+
+/// The line of each movement of a program, if there is one.
+pub(super) fn lines(program: Option<&Path>, robot: &str) -> anyhow::Result<Vec<ProgramLine>> {
+    let Some(program) = program else { return Ok(Vec::new()) };
+    lines_of(program, robot).with_context(|| format!("--program {}", program.display()))
+}
+
+fn lines_of(program: &Path, robot: &str) -> anyhow::Result<Vec<ProgramLine>> {
     let cell = CellArgs {
         paths: vec![program.to_path_buf()],
         robot: Some(robot.to_owned()),

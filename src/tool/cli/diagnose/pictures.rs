@@ -13,6 +13,9 @@ use crate::tool::report::html::{Excerpt, Line, Pictures};
 const AROUND: usize = 4;
 
 pub(super) fn pictures(model: &Model, records: &[Record<'_>], found: &Diagnosis) -> Pictures {
+    if records.is_empty() {
+        return Pictures { sources: sources(found), ..Pictures::default() };
+    }
     let models = [model, &found.refit.applied, &found.improved.applied];
     let missed = models.map(|model| missed(records, model));
     let over = |joint: usize, quantity: Quantity| {

@@ -106,6 +106,9 @@ fn heldout(basis: &Basis) -> String {
 }
 
 fn cards(found: &Diagnosis) -> Vec<Value> {
+    if found.shrink.joints.is_empty() {
+        return Vec::new();
+    }
     let card = |name: &str, of: &Interval| {
         let [value, low, high] = [of.value, of.low, of.high].map(percent);
         json!({
