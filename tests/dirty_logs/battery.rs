@@ -61,7 +61,7 @@ impl Table {
     }
 
     /// The text with other cells in some rows from the middle on.
-    fn from_middle(&self, count: usize, change: impl Fn(&mut [String])) -> Vec<u8> {
+    fn with_middle(&self, count: usize, change: impl Fn(&mut [String])) -> Vec<u8> {
         self.with(|rows| {
             let at = middle(rows);
             rows[at..at + count].iter_mut().for_each(|row| change(row));
@@ -70,12 +70,12 @@ impl Table {
 
     /// The text with another time in a row of the middle.
     fn time(&self, by: f64) -> Vec<u8> {
-        self.from_middle(1, |row| row[0] = moved(&row[0], by))
+        self.with_middle(1, |row| row[0] = moved(&row[0], by))
     }
 
     /// The text with a cell of the middle changed.
     fn cell(&self, text: &str) -> Vec<u8> {
-        self.from_middle(1, |row| text.clone_into(&mut row[3]))
+        self.with_middle(1, |row| text.clone_into(&mut row[3]))
     }
 
     /// The text without some rows of the middle.
@@ -306,10 +306,10 @@ pub(crate) const LOSSES: &[Dirty] = &[
             rows.swap(at, at + 1);
         })
     }),
-    dirty("a jump of 1 rad", 1, |log| log.from_middle(1, |row| row[2] = moved(&row[2], 1.0))),
-    dirty("a jump of 0.03 rad", 1, |log| log.from_middle(1, |row| row[2] = moved(&row[2], 0.03))),
+    dirty("a jump of 1 rad", 1, |log| log.with_middle(1, |row| row[2] = moved(&row[2], 1.0))),
+    dirty("a jump of 0.03 rad", 1, |log| log.with_middle(1, |row| row[2] = moved(&row[2], 0.03))),
     dirty("a jump for three rows", 3, |log| {
-        log.from_middle(3, |row| row[2] = moved(&row[2], -1.0))
+        log.with_middle(3, |row| row[2] = moved(&row[2], -1.0))
     }),
     dirty("a jump in the first row", 1, |log| {
         log.with(|rows| rows[0][2] = moved(&rows[0][2].clone(), 1.0))
@@ -321,9 +321,9 @@ pub(crate) const LOSSES: &[Dirty] = &[
         })
     }),
     dirty("a position without sense", 1, |log| log.cell("1e6")),
-    dirty("a row of zeros", 1, |log| log.from_middle(1, |row| row[1..].fill("0".into()))),
+    dirty("a row of zeros", 1, |log| log.with_middle(1, |row| row[1..].fill("0".into()))),
     dirty("a row in degrees", 1, |log| {
-        log.from_middle(1, |row| {
+        log.with_middle(1, |row| {
             for cell in &mut row[1..] {
                 *cell = cell.parse::<f64>().unwrap().to_degrees().to_string();
             }

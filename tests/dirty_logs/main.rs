@@ -42,7 +42,7 @@ impl Clean {
         let robot = robot(&folder);
         let (torques, rms) = (HashMap::new(), Vec::new());
         let mut clean = Clean { folder, robot, log, torques, rms };
-        let predicted = clean.torques(&clean.predicted(&clean.log.plain()));
+        let predicted = Clean::torques(&clean.predicted(&clean.log.plain()));
         assert_eq!(predicted.len(), clean.log.rows.len());
         let mean = |joint: usize| {
             let squares = predicted.iter().map(|(_, tau)| tau[joint].powi(2));
@@ -61,7 +61,7 @@ impl Clean {
     }
 
     /// Bits of the time and torques of each row of a prediction.
-    fn torques(&self, output: &Output) -> Vec<(u64, Vec<f64>)> {
+    fn torques(output: &Output) -> Vec<(u64, Vec<f64>)> {
         let of = |row: Vec<f64>| (row[0].to_bits(), row[1..row.len() - 2].to_vec());
         rows(&stdout(output)).into_iter().map(of).collect()
     }
@@ -70,7 +70,7 @@ impl Clean {
     fn misses(&self, dirty: &Dirty, tolerance: &Tolerance) -> Option<String> {
         let log = (dirty.bytes)(&self.log);
         let output = self.predicted(&log);
-        let predicted = self.torques(&output);
+        let predicted = Self::torques(&output);
         let mut off = Vec::new();
         for (time, tau) in &predicted {
             let Some(clean) = self.torques.get(time) else {
