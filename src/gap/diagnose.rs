@@ -5,12 +5,13 @@ use super::decision::{
     Candidate, Decision, Finding, Found, Gate, Search, Tried, Verdict, decide, fit_effects,
     may_name_parameters,
 };
-use super::design::{Design, Trust};
+use super::design::Design;
 use super::diagnosis::Diagnosis;
 use super::grade::{JointGap, Shrink, budget, places, places_missed, shrink};
 use super::model::Improved;
 use super::phase::Phase;
 use super::posterior::{Hypothesis, Member, fitted_as_written};
+use super::trust::Trust;
 use super::tunables::Tunables;
 use crate::arm::dynamics::Load;
 use crate::arm::effects::{Acts, Effect, Nature};

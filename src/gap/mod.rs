@@ -15,11 +15,12 @@ mod motion;
 mod phase;
 mod posterior;
 mod power;
+mod trust;
 mod tunables;
 
 pub use data::{Record, RecordKind, common_factor};
 pub use decision::{Entry, Estimated, Finding, Gate, Place, Remainder, Verdict};
-pub use design::Trust;
+
 pub use diagnose::{Logs, Settings, diagnose, diagnose_logs};
 pub use diagnosis::Diagnosis;
 pub use grade::{
@@ -30,4 +31,5 @@ pub use model::{Fitted, Improved};
 pub use motion::{Run, RunEffect, RunFound, diagnose_runs};
 pub use phase::Phase;
 pub use power::{PowerEffect, PowerFound, Powers, diagnose_power};
+pub use trust::Trust;
 pub use tunables::{Tunable, Tunables};

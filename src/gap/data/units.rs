@@ -1,7 +1,7 @@
 //! Torques that are a multiple of the model's at every joint: another unit, another robot.
 
 use super::record::{Record, RecordKind};
-use crate::gap::design::Trust;
+use crate::gap::trust::Trust;
 
 /// Correlation with the model's torque from which on a joint's factor is one.
 const LIKE: f64 = 0.9;

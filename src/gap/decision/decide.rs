@@ -6,9 +6,10 @@ use super::search::{Candidate, Found, Search, Tried};
 use super::trail::{Entry, Gate};
 use crate::arm::effects::{Effect, Nature, Scope};
 use crate::gap::data::RecordKind;
-use crate::gap::design::{Set, Trust};
+use crate::gap::design::Set;
 use crate::gap::model::Fitted;
 use crate::gap::posterior::Fit;
+use crate::gap::trust::Trust;
 
 /// Ids of effects that a class has at most: more are unknown.
 const LARGEST_CLASS: usize = 5;

@@ -11,10 +11,8 @@ mod joint;
 mod parameters;
 mod piece;
 mod problem;
-mod trust;
 
 pub use everyday::Group;
 pub use joint::{Cell, JointDesign, Set};
 pub use piece::{Clock, PieceRows, Whole, link_pieces, piece_rows};
 pub use problem::Design;
-pub use trust::Trust;

@@ -8,7 +8,7 @@ use crate::arm::robot::Link;
 use crate::gap::data::{Record, RecordKind};
 use crate::gap::tunables::Tunables;
 
-use super::trust::{Spread, Trust};
+use crate::gap::trust::{Spread, Trust};
 
 /// Displacement of a centre of mass over which differences are taken \[m\].
 const SMALL: f64 = 1e-6;

@@ -4,8 +4,8 @@ use rayon::prelude::*;
 
 use super::joint::JointDesign;
 use super::parameters::Parameters;
-use super::trust::Trust;
 use crate::gap::data::Record;
+use crate::gap::trust::Trust;
 use crate::gap::tunables::Tunables;
 
 /// The rows of all joints, and what the logs have in common.
