@@ -62,7 +62,7 @@ tunables! {
     /// Its spread.
     smooth_spread = 0.8, "ln", "derived: a factor of 15 between the 5 % and the 95 % quantile";
     /// Median of everyday friction after a reversal, of Coulomb friction.
-    reversal = 0.3, "1", "derived: friction builds up from its other sign";
+    reversal = 1.0, "1", "derived: friction builds up from its other sign";
     /// Its spread.
     reversal_spread = 1.0, "ln", "derived";
     /// Median of the change of friction from log to log, of the friction.

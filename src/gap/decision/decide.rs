@@ -138,7 +138,7 @@ pub fn decide(search: &Search<'_>, none: &Found, found: &Found, tried: &[Tried])
     let has_parameters = kept.iter().any(|of| of.effect.nature == Nature::Parameters);
     let fit = match kept.len() {
         0 => None,
-        _ => search.with(none, kept.clone(), none.fit.sizes.clone()),
+        _ => search.with(none, kept.clone()),
     };
     let fit =
         fit.unwrap_or_else(|| Found { effects: Vec::new(), score: 0.0, fit: none.fit.clone() });

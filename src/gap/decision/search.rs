@@ -15,7 +15,7 @@ const FULL: usize = 6;
 const MOST: usize = 3;
 /// Steps of the sizes: of a first fit, and of a fit with an effect.
 const FIRST: usize = 10;
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 6;
 /// Sets whose shapes are refined in each round.
 const REFINED: usize = 4;
 
@@ -94,6 +94,7 @@ impl Search<'_> {
     #[must_use]
     pub fn none_of(design: &Design) -> Option<Found> {
         let fit = fitted(design, Hypothesis::default(), usual(design), FIRST, false)?;
+        if std::env::var("JP_S").is_ok() { for (j, s) in fit.sizes.iter().enumerate() { eprintln!("J{} rows {} e {:?} groups {:?}", j + 1, design.joints[j].y.len(), s.error.map(|e| (e.value * 1e5).round() / 1e3), s.groups.iter().map(|(g, v)| format!("{g:?} {:.2}", 100.0 * v.value)).collect::<Vec<_>>()); } }
         Some(Found { effects: Vec::new(), score: 0.0, fit })
     }
 
@@ -155,10 +156,19 @@ impl Search<'_> {
 
     /// The fit with a set of effects, from sizes.
     #[must_use]
-    pub fn with(&self, base: &Found, effects: Vec<Candidate>, sizes: Sizes) -> Option<Found> {
+    pub fn with(&self, base: &Found, effects: Vec<Candidate>) -> Option<Found> {
         let pieces = effects.iter().flat_map(|of| of.pieces.iter().cloned());
         let members = pieces.map(|piece| Member::new(self.design, self.records, piece)).collect();
-        let fit = fitted(self.design, Hypothesis { members }, sizes, ROUNDS, true)?;
+        let hypothesis = Hypothesis { members };
+        // Sizes that made up for an effect are too large with it, and would shrink slowly.
+        let mut sizes = base.fit.sizes.clone();
+        for (joint, usual) in usual(self.design).into_iter().enumerate() {
+            if hypothesis.reaches(joint) {
+                sizes[joint] = usual;
+            }
+        }
+        let fit = fitted(self.design, hypothesis, sizes, ROUNDS, true)?;
+        if std::env::var("JP_S").is_ok() { let n = self.design.parameters.count(); eprintln!("WITH mean {:?} amp {:?}", fit.mean.rows(n, fit.mean.len() - n).iter().collect::<Vec<_>>(), fit.amplitudes.iter().map(|a| a.value).collect::<Vec<_>>()); for (j, s) in fit.sizes.iter().enumerate().filter(|(j, _)| fit.hypothesis.reaches(*j)) { eprintln!("  J{} rows {} e {:?} groups {:?}", j + 1, self.design.joints[j].y.len(), s.error.map(|e| (e.value * 1e5).round() / 1e3), s.groups.iter().map(|(g, v)| format!("{g:?} {:.2}", 100.0 * v.value)).collect::<Vec<_>>()); } }
         let cost: f64 = effects.iter().map(|of| of.cost).sum();
         let score = fit.log_evidence - base.fit.log_evidence - cost;
         Some(Found { effects, fit, score })
@@ -218,7 +228,7 @@ impl Search<'_> {
         if effects.is_empty() {
             Some(none.clone())
         } else {
-            self.with(none, effects, none.fit.sizes.clone())
+            self.with(none, effects)
         }
     }
 
@@ -227,7 +237,7 @@ impl Search<'_> {
     pub fn without(&self, none: &Found, found: &Found, effect: usize) -> Option<Found> {
         let mut effects = found.effects.clone();
         effects.remove(effect);
-        self.with(none, effects, none.fit.sizes.clone())
+        self.with(none, effects)
     }
 
     /// The set without one piece of one of its effects.
@@ -242,7 +252,7 @@ impl Search<'_> {
         let mut effects = found.effects.clone();
         let gone = effects[effect].pieces.remove(piece);
         effects[effect].cost -= self.design.tunables.joint_cost + (gone.choices.max(1) as f64).ln();
-        self.with(none, effects, none.fit.sizes.clone())
+        self.with(none, effects)
     }
 
     /// The best sets with one effect more than `found`, best first.
@@ -281,13 +291,12 @@ impl Search<'_> {
                 }
             }
         }
-        let sizes = none.fit.sizes.clone();
         let mut all: Vec<Found> = wanted
             .into_iter()
             .filter_map(|candidate| {
                 let mut effects = found.effects.clone();
                 effects.push(candidate);
-                self.with(none, effects, sizes.clone())
+                self.with(none, effects)
             })
             .collect();
         all.sort_by(|a, b| b.score.total_cmp(&a.score));
@@ -334,7 +343,7 @@ impl Search<'_> {
         if let Some(last) = effects.last_mut() {
             last.pieces = pieces;
         }
-        match self.with(none, effects, none.fit.sizes.clone()) {
+        match self.with(none, effects) {
             Some(better) if better.score > of.score => better,
             _ => of,
         }

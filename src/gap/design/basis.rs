@@ -145,26 +145,40 @@ pub(super) fn functions(
         .collect()
 }
 
-/// Functions that fade after each reversal.
+/// Functions that fade after each reversal, with the sense of the motion.
 fn after_reversals(
+    motions: &[&Motion<'_>],
+    joint: usize,
+    tunables: &Tunables,
+) -> Vec<Vec<Vec<f64>>> {
+    let mut all = fades(motions, joint, tunables);
+    for fade in &mut all {
+        for (series, m) in fade.iter_mut().zip(motions) {
+            series.iter_mut().zip(&m.senses[joint]).for_each(|(x, sense)| *x *= sense);
+        }
+    }
+    all
+}
+
+/// What is left of 1 after each reversal: by function, by motion, by row.
+#[must_use]
+pub(super) fn fades(
     motions: &[&Motion<'_>],
     joint: usize,
     tunables: &Tunables,
 ) -> Vec<Vec<Vec<f64>>> {
     let since: Vec<[Vec<f64>; 2]> = motions.iter().map(|m| since_reversal(m, joint)).collect();
     let usual = [tunables.fade_angle, tunables.fade_time];
-    let fades = ANGLES.iter().map(|by| (0, *by)).chain(TIMES.iter().map(|by| (1, *by)));
-    fades
-        .map(|(of, by)| {
-            // Functions that fade more slowly are smaller.
-            let (fade, size) = (by * usual[of], (1.0 / by).min(1.0));
-            let series = |(m, since): (&&Motion<'_>, &[Vec<f64>; 2])| -> Vec<f64> {
-                let pairs = since[of].iter().zip(&m.senses[joint]);
-                pairs.map(|(x, s)| size * s * (-x / fade).exp()).collect()
-            };
-            motions.iter().zip(&since).map(series).collect()
-        })
-        .collect()
+    let all = ANGLES.iter().map(|by| (0, *by)).chain(TIMES.iter().map(|by| (1, *by)));
+    all.map(|(of, by)| {
+        // Functions that fade more slowly are smaller.
+        let (fade, size) = (by * usual[of], (1.0 / by).min(1.0));
+        let series = |since: &[Vec<f64>; 2]| -> Vec<f64> {
+            since[of].iter().map(|x| size * (-x / fade).exp()).collect()
+        };
+        since.iter().map(series).collect()
+    })
+    .collect()
 }
 
 /// Root of the mean square.

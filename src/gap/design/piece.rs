@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-use super::basis::{functions, rms};
+use super::basis::{fades, functions, rms};
 use super::column::{Column, Piece, columns_at, pieces};
 use super::joint::Set;
 use super::problem::Design;
@@ -207,13 +207,37 @@ impl PieceRows {
         self
     }
 
-    /// Functions of the variable of its law, of unit size: by joint, with their rows.
+    /// Functions by which the form of its law may differ, of unit size: by joint, with their rows.
     #[must_use]
     pub fn forms(&self, design: &Design, records: &[Record<'_>]) -> Vec<(usize, DMatrix<f64>)> {
         let Some(variable) = self.effect.variable else { return Vec::new() };
+        self.forms_of(design, records, &|motions, joint| {
+            let mut all = functions(variable, motions, joint, &design.tunables);
+            all.extend(self.after_reversals(design, motions, joint));
+            all
+        })
+    }
+
+    /// Those of them that are there after reversals alone.
+    #[must_use]
+    pub fn forms_after_reversals(
+        &self,
+        design: &Design,
+        records: &[Record<'_>],
+    ) -> Vec<(usize, DMatrix<f64>)> {
+        self.forms_of(design, records, &|motions, joint| self.after_reversals(design, motions, joint))
+    }
+
+    /// Rows of functions of the motions at each of its joints, in the logs as they are now.
+    fn forms_of(
+        &self,
+        design: &Design,
+        records: &[Record<'_>],
+        functions: &dyn Fn(&[&Motion<'_>], usize) -> Vec<Vec<Vec<f64>>>,
+    ) -> Vec<(usize, DMatrix<f64>)> {
         let motions: Vec<&Motion<'_>> = records.iter().map(|record| &record.motion).collect();
         let of_joint = |joint: usize| {
-            let all = functions(variable, &motions, joint, &design.tunables);
+            let all = functions(&motions, joint);
             let of = &design.joints[joint];
             let mut rows = DMatrix::zeros(of.y.len(), all.len());
             for (k, series) in all.iter().enumerate() {
@@ -227,7 +251,29 @@ impl PieceRows {
             (joint, rows)
         };
         let own = |joint: &usize| self.joint.is_none_or(|own| own == *joint);
-        self.rows.iter().map(|(joint, _)| *joint).filter(own).map(of_joint).collect()
+        let joints = self.rows.iter().map(|(joint, _)| *joint).filter(own).map(of_joint);
+        joints.filter(|(_, rows)| rows.ncols() > 0).collect()
+    }
+
+    /// A law of friction after each reversal, from which on it builds up: of the size that is usual of
+    /// dry friction, over that of a form.
+    fn after_reversals(&self, design: &Design, motions: &[&Motion<'_>], joint: usize) -> Vec<Vec<Vec<f64>>> {
+        if !matches!(self.effect.form, Form::Law { dissipates: true, .. }) {
+            return Vec::new();
+        }
+        let of_motion = |m: &&Motion<'_>| -> Vec<f64> {
+            let added = self.effect.added(m, joint, &self.shape);
+            let own = added.into_iter().find(|(of, _)| *of == joint);
+            own.map_or_else(|| vec![0.0; m.rows()], |(_, series)| series)
+        };
+        let law: Vec<Vec<f64>> = motions.iter().map(of_motion).collect();
+        let tunables = &design.tunables;
+        let size = tunables.reversal / tunables.form / rms(law.iter().flatten()).max(f64::MIN_POSITIVE);
+        let mut all = fades(motions, joint, tunables);
+        for series in all.iter_mut().flat_map(|fade| fade.iter_mut().zip(&law)) {
+            series.0.iter_mut().zip(series.1).for_each(|(x, law)| *x *= size * law);
+        }
+        all
     }
 
     /// The piece at just its shape.

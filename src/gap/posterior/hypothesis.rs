@@ -45,6 +45,13 @@ impl Member {
         let forms = piece.forms(design, records);
         Member { piece, forms }
     }
+
+    /// A piece as it is written, which is not right just after reversals.
+    #[must_use]
+    pub fn as_written(design: &Design, records: &[Record<'_>], piece: PieceRows) -> Member {
+        let forms = piece.forms_after_reversals(design, records);
+        Member { piece, forms }
+    }
 }
 
 impl Hypothesis {
