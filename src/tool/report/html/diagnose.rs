@@ -89,6 +89,8 @@ pub fn diagnose_report(
     context.insert("sources", &pictures.sources);
     context.insert("shapes", &pictures.shapes.iter().map(shape).collect::<Vec<_>>());
     context.insert("residuals", &residuals(pictures));
+    // The examined cases and the model's error are of torques.
+    context.insert("has_torques", &!found.shrink.joints.is_empty());
     context.insert("examined", &EXAMINED);
     context.insert("reliability", &reliability(&COUNTED.map(counted)));
     context.insert("error", &fixed(100.0 * found.error, 2));
