@@ -7,6 +7,8 @@ use std::f64::consts::TAU;
 pub(crate) struct Table {
     pub(crate) header: Vec<String>,
     pub(crate) rows: Vec<Vec<String>>,
+    /// Position, rate and acceleration of a joint (from 0) at a time \[s\].
+    pub(crate) motion: fn(usize, f64) -> [f64; 3],
 }
 
 impl Table {
@@ -28,7 +30,7 @@ impl Table {
             });
             [format!("{t:.3}")].into_iter().chain(cells).collect()
         };
-        Table { header, rows: (0..count).map(row).collect() }
+        Table { header, rows: (0..count).map(row).collect(), motion }
     }
 
     pub(crate) fn text(&self, delimiter: &str) -> String {
@@ -43,7 +45,7 @@ impl Table {
     /// The table with other cells.
     pub(crate) fn cells(&self, change: impl Fn(&str) -> String) -> Table {
         let row = |cells: &Vec<String>| cells.iter().map(|cell| change(cell)).collect();
-        Table { header: self.header.clone(), rows: self.rows.iter().map(row).collect() }
+        Table { rows: self.rows.iter().map(row).collect(), ..self.clone() }
     }
 
     /// The text with other rows.

@@ -15,7 +15,7 @@ use serde_json::Value;
 
 use super::common::{self, Format};
 use super::input::{self, Input};
-use super::logs::{PreparedLog, RawLog, Reader, held_out, read_all, refuse_same};
+use super::logs::{PreparedLog, RawLog, Reader, held_out, hold_out, read_all, refuse_same};
 use super::output::{self, is_same_file};
 use crate::arm::effects::{self, ALL, Effect};
 use crate::arm::robot::{Model, Use, nearest, ready, to_toml};
@@ -340,16 +340,11 @@ fn read_data(
     let [now, others] =
         [&train, &held].map(|logs| logs.iter().map(|of| &of.record).collect::<Vec<_>>());
     refuse_same(&now, &others)?;
-    let heldout = if !held.is_empty() {
-        "file"
-    } else if train.len() > 1 {
-        held.extend(train.pop());
-        "trajectory"
-    } else {
+    let heldout = hold_out(&mut train, &mut held);
+    if held.is_empty() {
         let [first, last] = held_out(model, &train[0])?;
         (train, held) = (vec![first], vec![last]);
-        "cycles"
-    };
+    }
     if let Some(factor) = common_factor(&records(model, &train), trust) {
         bail!(
             "the torques of all joints are {factor:.3} times those of the model: give torques in Nm \

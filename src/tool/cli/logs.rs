@@ -164,6 +164,19 @@ pub(super) fn refuse_same(train: &[&LogRecord], held: &[&LogRecord]) -> anyhow::
     Ok(())
 }
 
+/// Without held-out logs, holds the last of several logs out. The kind of held-out data: `file`,
+/// `trajectory`, or `cycles` where a single log is still to be split.
+pub(super) fn hold_out<T>(train: &mut Vec<T>, held: &mut Vec<T>) -> &'static str {
+    if !held.is_empty() {
+        return "file";
+    }
+    if train.len() < 2 {
+        return "cycles";
+    }
+    held.extend(train.pop());
+    "trajectory"
+}
+
 /// Splits a log into training and held-out part: the last repetitions, or the last part of the
 /// whole.
 ///

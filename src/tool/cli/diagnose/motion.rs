@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use anyhow::bail;
 
-use super::super::logs::{CheckedLog, HELD_OUT, RawLog, Reader, refuse_same};
+use super::super::logs::{CheckedLog, HELD_OUT, RawLog, Reader, hold_out, refuse_same};
 use super::channels::run;
 use crate::gap::Run;
 use crate::learn::log::Channel;
@@ -46,14 +46,7 @@ pub(super) fn logged(reader: &mut Reader<'_>, logs: [Vec<RawLog>; 3]) -> anyhow:
     let [now, others] =
         [&train, &held].map(|logs| logs.iter().map(|(of, _)| &of.record).collect::<Vec<_>>());
     refuse_same(&now, &others)?;
-    let heldout = if !held.is_empty() {
-        "file"
-    } else if train.len() > 1 {
-        held.extend(train.pop());
-        "trajectory"
-    } else {
-        "cycles"
-    };
+    let heldout = hold_out(&mut train, &mut held);
     let graded = if held.is_empty() { &train } else { &held };
     let graded = graded.iter().map(|(of, _)| of.record.path.clone()).collect();
     let [mut now, mut held, before]: [Vec<Run>; 3] =
