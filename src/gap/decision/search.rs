@@ -94,7 +94,6 @@ impl Search<'_> {
     #[must_use]
     pub fn none_of(design: &Design) -> Option<Found> {
         let fit = fitted(design, Hypothesis::default(), usual(design), FIRST, false)?;
-        if std::env::var("JP_S").is_ok() { for (j, s) in fit.sizes.iter().enumerate() { eprintln!("J{} rows {} e {:?} groups {:?}", j + 1, design.joints[j].y.len(), s.error.map(|e| (e.value * 1e5).round() / 1e3), s.groups.iter().map(|(g, v)| format!("{g:?} {:.2}", 100.0 * v.value)).collect::<Vec<_>>()); } }
         Some(Found { effects: Vec::new(), score: 0.0, fit })
     }
 
@@ -168,7 +167,6 @@ impl Search<'_> {
             }
         }
         let fit = fitted(self.design, hypothesis, sizes, ROUNDS, true)?;
-        if std::env::var("JP_S").is_ok() { let n = self.design.parameters.count(); eprintln!("WITH mean {:?} amp {:?}", fit.mean.rows(n, fit.mean.len() - n).iter().collect::<Vec<_>>(), fit.amplitudes.iter().map(|a| a.value).collect::<Vec<_>>()); for (j, s) in fit.sizes.iter().enumerate().filter(|(j, _)| fit.hypothesis.reaches(*j)) { eprintln!("  J{} rows {} e {:?} groups {:?}", j + 1, self.design.joints[j].y.len(), s.error.map(|e| (e.value * 1e5).round() / 1e3), s.groups.iter().map(|(g, v)| format!("{g:?} {:.2}", 100.0 * v.value)).collect::<Vec<_>>()); } }
         let cost: f64 = effects.iter().map(|of| of.cost).sum();
         let score = fit.log_evidence - base.fit.log_evidence - cost;
         Some(Found { effects, fit, score })
@@ -225,11 +223,7 @@ impl Search<'_> {
     pub fn without_ids(&self, none: &Found, found: &Found, ids: &[&str]) -> Option<Found> {
         let mut effects = found.effects.clone();
         effects.retain(|of| !ids.contains(&of.effect.id));
-        if effects.is_empty() {
-            Some(none.clone())
-        } else {
-            self.with(none, effects)
-        }
+        if effects.is_empty() { Some(none.clone()) } else { self.with(none, effects) }
     }
 
     /// The set without one of its effects.
@@ -300,21 +294,6 @@ impl Search<'_> {
             })
             .collect();
         all.sort_by(|a, b| b.score.total_cmp(&a.score));
-        if std::env::var("JP_S").is_ok() {
-            for f in &all {
-                eprintln!(
-                    "  {:.1} {:?}",
-                    f.score,
-                    f.effects
-                        .iter()
-                        .map(|e| (
-                            e.effect.id,
-                            e.pieces.iter().map(|p| (p.joint, p.shape.clone())).collect::<Vec<_>>()
-                        ))
-                        .collect::<Vec<_>>()
-                );
-            }
-        }
         let rest = all.split_off(all.len().min(REFINED));
         let mut all: Vec<Found> =
             all.into_iter().map(|of| self.refined(none, found, of)).chain(rest).collect();

@@ -225,7 +225,9 @@ impl PieceRows {
         design: &Design,
         records: &[Record<'_>],
     ) -> Vec<(usize, DMatrix<f64>)> {
-        self.forms_of(design, records, &|motions, joint| self.after_reversals(design, motions, joint))
+        self.forms_of(design, records, &|motions, joint| {
+            self.after_reversals(design, motions, joint)
+        })
     }
 
     /// Rows of functions of the motions at each of its joints, in the logs as they are now.
@@ -257,7 +259,12 @@ impl PieceRows {
 
     /// A law of friction after each reversal, from which on it builds up: of the size that is usual of
     /// dry friction, over that of a form.
-    fn after_reversals(&self, design: &Design, motions: &[&Motion<'_>], joint: usize) -> Vec<Vec<Vec<f64>>> {
+    fn after_reversals(
+        &self,
+        design: &Design,
+        motions: &[&Motion<'_>],
+        joint: usize,
+    ) -> Vec<Vec<Vec<f64>>> {
         if !matches!(self.effect.form, Form::Law { dissipates: true, .. }) {
             return Vec::new();
         }
@@ -268,7 +275,8 @@ impl PieceRows {
         };
         let law: Vec<Vec<f64>> = motions.iter().map(of_motion).collect();
         let tunables = &design.tunables;
-        let size = tunables.reversal / tunables.form / rms(law.iter().flatten()).max(f64::MIN_POSITIVE);
+        let size =
+            tunables.reversal / tunables.form / rms(law.iter().flatten()).max(f64::MIN_POSITIVE);
         let mut all = fades(motions, joint, tunables);
         for series in all.iter_mut().flat_map(|fade| fade.iter_mut().zip(&law)) {
             series.0.iter_mut().zip(series.1).for_each(|(x, law)| *x *= size * law);
