@@ -115,6 +115,8 @@ pub struct Parameter {
     pub bounds: [f64; 2],
     /// What a model has of it at a joint, `None` where it says nothing: no more can be taken away.
     pub there: Option<fn(&Model, usize) -> Option<f64>>,
+    /// Standard deviation of what any robot has of it; 0 where that is nothing.
+    pub everyday: f64,
 }
 
 impl Parameter {
@@ -122,6 +124,12 @@ impl Parameter {
     #[must_use]
     pub(super) const fn beside(self, there: fn(&Model, usize) -> Option<f64>) -> Parameter {
         Parameter { there: Some(there), ..self }
+    }
+
+    /// A parameter of which any robot has some.
+    #[must_use]
+    pub(super) const fn everyday(self, everyday: f64) -> Parameter {
+        Parameter { everyday, ..self }
     }
 
     /// Whether its values are limited.
@@ -319,7 +327,14 @@ pub(super) fn shaped(_: &Scale) -> f64 {
 /// An unbounded parameter.
 #[must_use]
 pub(super) const fn free(name: &'static str, unit: &'static str, what: &'static str) -> Parameter {
-    Parameter { name, unit, what, bounds: [f64::NEG_INFINITY, f64::INFINITY], there: None }
+    Parameter {
+        name,
+        unit,
+        what,
+        bounds: [f64::NEG_INFINITY, f64::INFINITY],
+        there: None,
+        everyday: 0.0,
+    }
 }
 
 /// A bounded parameter.
@@ -330,7 +345,7 @@ pub(super) const fn bounded(
     what: &'static str,
     bounds: [f64; 2],
 ) -> Parameter {
-    Parameter { name, unit, what, bounds, there: None }
+    Parameter { name, unit, what, bounds, there: None, everyday: 0.0 }
 }
 
 /// A linear coordinate with its prior standard deviation.

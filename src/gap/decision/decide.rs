@@ -15,6 +15,10 @@ use crate::gap::trust::Trust;
 const LARGEST_CLASS: usize = 5;
 /// Deviations by which a parameter may be beyond what is possible.
 const BEYOND: f64 = 2.0;
+/// Standard deviations of what any robot has within which a parameter is no finding.
+const EVERYDAY: f64 = 3.0;
+/// Correlation from which on a law takes back another one: it is a form of that.
+const TAKES_BACK: f64 = -0.5;
 
 /// What the logs that were fitted say.
 pub struct Decision {
@@ -50,6 +54,8 @@ struct Weighed {
 
 /// An effect at a joint.
 struct WeighedPiece {
+    /// Its number among all pieces.
+    member: usize,
     fitted: Fitted,
     /// Share of the joint's torque.
     share: f64,
@@ -105,14 +111,17 @@ pub fn decide(search: &Search<'_>, none: &Found, found: &Found, tried: &[Tried])
                 };
                 least.max(over * left)
             });
-            let largest = largest_confused(&weighed, number, joint);
+            let confused = beside_confused(search, found, &weighed, [number, k]);
             let is_quiet = joint.is_none_or(|joint| !noisy.contains(&joint));
             let mut there = is_quiet
                 & ask(Gate::Size, at.clone(), piece.share, least)
                 & ask(Gate::Bounds, at.clone(), piece.fitted.beyond_bounds(), BEYOND);
-            if largest > 0.0 {
-                let ratio = piece.share / largest;
+            if let Some(ratio) = confused {
                 there &= ask(Gate::Form, at.clone(), ratio, tunables.of_confused);
+            }
+            // A baseline has what any robot has.
+            if let Some(value) = piece.fitted.over_everyday().filter(|_| !has_baseline) {
+                there &= ask(Gate::Everyday, at.clone(), value, EVERYDAY);
             }
             if of.pieces.len() > 1 {
                 there &= ask(Gate::JointEvidence, at, piece.nats, tunables.joint_nats);
@@ -180,18 +189,33 @@ impl Weighed {
     }
 }
 
-/// The largest share of a joint's torque of another effect with which one may be confused.
-fn largest_confused(weighed: &[Weighed], number: usize, joint: Option<usize>) -> f64 {
-    let own = weighed[number].effect;
+/// Size of a piece beside the largest one at its joint with which it may be confused; negative where it
+/// takes that back; `None` without such a piece.
+fn beside_confused(
+    search: &Search<'_>,
+    found: &Found,
+    weighed: &[Weighed],
+    [number, k]: [usize; 2],
+) -> Option<f64> {
+    let (own, piece) = (&weighed[number], &weighed[number].pieces[k]);
     let is_confused = |other: &Weighed| {
-        let (a, b) = (own, other.effect);
+        let (a, b) = (own.effect, other.effect);
         a.id != b.id && (a.confused.contains(&b.id) || b.confused.contains(&a.id))
     };
-    let confused = weighed.iter().filter(|other| is_confused(other));
-    let there = confused.flat_map(|other| &other.pieces).filter(|piece| {
-        joint.is_none() || piece.fitted.joint.is_none() || piece.fitted.joint == joint
+    let there = weighed.iter().filter(|other| is_confused(other)).flat_map(|other| &other.pieces);
+    let there = there.filter(|other| {
+        let (a, b) = (piece.fitted.joint, other.fitted.joint);
+        a.is_none() || b.is_none() || a == b
     });
-    there.map(|piece| piece.share).fold(0.0, f64::max)
+    let largest = there.max_by(|a, b| a.share.total_cmp(&b.share))?;
+    let ratio = piece.share / largest.share.max(f64::MIN_POSITIVE);
+    let members = [piece.member, largest.member].map(|member| member..member + 1);
+    let joint = piece.fitted.joint.or(largest.fitted.joint);
+    let joints = joint.map_or(0..search.design.joints.len(), |joint| joint..joint + 1);
+    let least = joints
+        .map(|joint| found.fit.correlation(search.design, members.clone(), joint))
+        .fold(0.0, f64::min);
+    Some(if least < TAKES_BACK && ratio < 1.0 { -ratio } else { ratio })
 }
 
 /// Parameters of an effect at its joints; with several joints their names end with the joint.
@@ -258,7 +282,7 @@ fn weigh(
             1 => found.score - without,
             _ => found.score - score(search.without_joint(none, found, number, k)),
         };
-        WeighedPiece { fitted, share: size, nats }
+        WeighedPiece { member: first + k, fitted, share: size, nats }
     });
     let piece = &found.effects[number].pieces[0];
     let is_part = effect.scope == Scope::Robot && piece.rows.len() < n;

@@ -17,6 +17,8 @@ pub enum Gate {
     Form,
     /// Standard deviations by which a parameter is beyond what is possible \[1\], at most.
     Bounds,
+    /// Standard deviations of what any robot has of the parameter \[1\], at least.
+    Everyday,
     /// Noise of the joint over that of the baseline \[1\], at most.
     Noise,
     /// What the effect leaves of the gap in the held-out data \[1\], at most.
@@ -47,7 +49,9 @@ impl Gate {
     #[must_use]
     pub fn is_upper(self) -> bool {
         match self {
-            Gate::Evidence | Gate::JointEvidence | Gate::Size | Gate::Form => false,
+            Gate::Evidence | Gate::JointEvidence | Gate::Size | Gate::Form | Gate::Everyday => {
+                false
+            }
             Gate::Bounds | Gate::Noise | Gate::HeldOut | Gate::Unexplained | Gate::Class => true,
         }
     }
@@ -60,6 +64,7 @@ impl Gate {
             Gate::JointEvidence => "evidence of the joint, nats",
             Gate::Size => "share of the joint's torque",
             Gate::Form => "size beside a law that it may be a form of",
+            Gate::Everyday => "deviations of what any robot has",
             Gate::Bounds => "deviations beyond what is possible",
             Gate::Noise => "noise over that of the baseline",
             Gate::HeldOut => "what is left of the gap in the held-out data",

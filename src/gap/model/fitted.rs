@@ -49,6 +49,15 @@ impl Fitted {
         });
         beyond.fold(0.0, f64::max)
     }
+
+    /// The largest parameter of which any robot has some, over what is usual of it; `None` without
+    /// such a parameter.
+    #[must_use]
+    pub fn over_everyday(&self) -> Option<f64> {
+        let values = self.effect.parameters.iter().zip(&self.parameters);
+        let usual = values.filter(|(of, _)| of.everyday > 0.0);
+        usual.map(|(of, value)| value.abs() / of.everyday).reduce(f64::max)
+    }
 }
 
 /// Coordinates of the columns' factors, and how they change with these.

@@ -1,5 +1,7 @@
 //! Shares of a joint's torque: of everyday errors, of effects.
 
+use std::ops::Range;
+
 use nalgebra::{Cholesky, DVector};
 
 use super::fit::Fit;
@@ -45,11 +47,34 @@ impl Fit {
         largest.filter(|(share, _)| *share > error).map(|(_, of)| of)
     }
 
-    /// Share of a member in a joint's torque in the logs as they are now: root mean square.
+    /// Share of members in a joint's torque in the logs as they are now: root mean square.
     #[must_use]
-    pub fn share(&self, design: &Design, members: std::ops::Range<usize>, joint: usize) -> f64 {
+    pub fn share(&self, design: &Design, members: Range<usize>, joint: usize) -> f64 {
+        self.product(design, [members.clone(), members], joint).sqrt()
+    }
+
+    /// Correlation of the torques of two ranges of members at a joint.
+    #[must_use]
+    pub fn correlation(&self, design: &Design, [a, b]: [Range<usize>; 2], joint: usize) -> f64 {
+        let sizes = [&a, &b].map(|of| self.share(design, of.clone(), joint));
+        let product = self.product(design, [a, b], joint);
+        product / (sizes[0] * sizes[1]).max(f64::MIN_POSITIVE)
+    }
+
+    /// Mean product of the torques of two ranges of members, of the mean square of the joint's.
+    fn product(&self, design: &Design, members: [Range<usize>; 2], joint: usize) -> f64 {
         let of = &design.joints[joint];
-        let mut sum = DVector::zeros(of.y.len());
+        let [a, b] = members.map(|of| self.torque(design, of, joint));
+        let (product, power) = now(of).fold((0.0, 0.0), |(product, power), cell| {
+            let [a, b] = [&a, &b].map(|rows| rows.rows(cell.rows.start, cell.rows.len()));
+            (product + a.dot(&b), power + cell.power * cell.rows.len() as f64)
+        });
+        product / power.max(f64::MIN_POSITIVE)
+    }
+
+    /// Rows of what members add to a joint's torque.
+    fn torque(&self, design: &Design, members: Range<usize>, joint: usize) -> DVector<f64> {
+        let mut sum = DVector::zeros(design.joints[joint].y.len());
         let mut from = design.parameters.count();
         for (number, member) in self.hypothesis.members.iter().enumerate() {
             let own = member.piece.own;
@@ -59,11 +84,7 @@ impl Fit {
             }
             from += member.piece.prior.len();
         }
-        let (squares, power) = now(of).fold((0.0, 0.0), |(squares, power), cell| {
-            let rows = sum.rows(cell.rows.start, cell.rows.len());
-            (squares + rows.norm_squared(), power + cell.power * cell.rows.len() as f64)
-        });
-        (squares / power.max(f64::MIN_POSITIVE)).sqrt()
+        sum
     }
 
     /// Mean square of smooth errors of some groups, of the torque's: what parameters could explain as

@@ -21,7 +21,8 @@ pub(in crate::arm::effects) const PRESLIDING: Effect = Effect {
         "rad",
         "angle in which 1/e is left to build up",
         [1e-5, 0.2],
-    )],
+    )
+    .everyday(0.002)],
     coordinates: &[shape(|_| vec![0.001, 0.003, 0.008, 0.02])],
     published: None,
     joints: every,

@@ -19,7 +19,7 @@ pub(in crate::arm::effects) const FILTER_LAG: Effect = Effect {
     law: "lag·dτ/dt + τ_logged = τ",
     source: "docs/identification.md",
     parameters: &[
-        bounded("lag", "s", "time constant", [0.0, 0.1]),
+        bounded("lag", "s", "time constant", [0.0, 0.1]).everyday(0.004),
         bounded("only_joint", "1", "the only joint that has it; 0: all", [0.0, 7.0]),
     ],
     coordinates: &[

@@ -19,7 +19,7 @@ pub(in crate::arm::effects) const TIME_DELAY: Effect = Effect {
     law: "τ = τ(t − delay), logged",
     source: "docs/identification.md",
     parameters: &[
-        bounded("delay", "s", "torque later than position", [-0.05, 0.05]),
+        bounded("delay", "s", "torque later than position", [-0.05, 0.05]).everyday(0.004),
         bounded("only_joint", "1", "the only joint that has it; 0: all", [0.0, 7.0]),
     ],
     coordinates: &[
