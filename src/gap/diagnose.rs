@@ -134,7 +134,7 @@ fn diagnose_telling(
     tell(Phase::Decision);
     let refit = improved(believed, (&design, &train), &[]);
     let models = Models { nominal: model, believed, refit: &refit };
-    let Graded { mut decision, mut best, mut graded } =
+    let Graded { mut decision, mut best, shrink: mut graded } =
         graded(&search, [&none, &found], &tried, held, &models);
     tell(Phase::Grading);
     let mut reasons = Vec::new();
@@ -186,7 +186,7 @@ struct Models<'a> {
 struct Graded {
     decision: Decision,
     best: Improved,
-    graded: Shrink,
+    shrink: Shrink,
 }
 
 /// Decides; effects that leave the gap in the held-out data as it is are not asserted.
@@ -202,33 +202,33 @@ fn graded(
     let mut withdrawn = Vec::new();
     loop {
         let mut decision = decide(search, none, &found, tried);
-        let best = match decision.asserted.is_empty() {
-            true => models.refit.clone(),
-            false => improved(models.believed, (search.design, search.records), &decision.asserted),
+        let best = if decision.asserted.is_empty() {
+            models.refit.clone()
+        } else {
+            improved(models.believed, (search.design, search.records), &decision.asserted)
         };
         let graded = shrink(held, [models.nominal, &models.refit.applied, &best.applied]);
         let mut idle: Vec<&'static str> = Vec::new();
-        for of in &decision.effects {
+        let is_written =
+            |of: &&Finding| decision.asserted.iter().any(|a| a.effect.id == of.effect.id);
+        for of in decision.effects.iter().chain(decision.candidates.iter().filter(is_written)) {
             let Some(limit) = left_at_most(of.effect, &search.design.tunables) else { continue };
             let entry = Gate::HeldOut.of(of.effect.id.to_owned(), left(of, &graded), limit);
             if !entry.passed {
                 idle.push(of.effect.id);
-                withdrawn.push(of.clone());
+                if of.effect.nature != Nature::Parameters {
+                    withdrawn.push(of.clone());
+                }
             }
             trail.push(entry);
         }
-        let less = match idle.is_empty() {
-            true => None,
-            false => search.without_ids(none, &found, &idle),
+        let less = if idle.is_empty() { None } else { search.without_ids(none, &found, &idle) };
+        let Some(less) = less else {
+            decision.trail.append(&mut trail);
+            decision.candidates.append(&mut withdrawn);
+            return Graded { decision, best, shrink: graded };
         };
-        match less {
-            Some(less) => found = less,
-            None => {
-                decision.trail.append(&mut trail);
-                decision.candidates.append(&mut withdrawn);
-                return Graded { decision, best, graded };
-            }
-        }
+        found = less;
     }
 }
 
@@ -237,9 +237,9 @@ fn graded(
 fn left_at_most(effect: &Effect, tunables: &Tunables) -> Option<f64> {
     match (effect.nature, effect.acts) {
         (Nature::Law, Acts::Always | Acts::AfterReversals) => Some(tunables.left_in_heldout),
-        // Robots warm up differently each day.
-        (Nature::Law, Acts::OverTime) => Some(1.0),
-        (Nature::Law, Acts::InWindow) | (Nature::Parameter | Nature::Parameters, _) => None,
+        // Robots warm up differently each day; other links are no finding.
+        (Nature::Law, Acts::OverTime) | (Nature::Parameters, _) => Some(1.0),
+        (Nature::Law, Acts::InWindow) | (Nature::Parameter, _) => None,
     }
 }
 
@@ -281,7 +281,7 @@ fn refusal(train: &[Record<'_>], graded: &Shrink, settings: &Settings) -> Option
 /// Whether most joints' torques are little like the best model's.
 fn is_hopeless(graded: &Shrink) -> bool {
     let used: Vec<&JointGap> = graded.joints.iter().filter(|of| of.torque > 0.0).collect();
-    let is_far = |of: &&&JointGap| of.refit_plus_effect > HOPELESS * of.torque;
+    let is_far = |of: &&&JointGap| of.refit.min(of.refit_plus_effect) > HOPELESS * of.torque;
     !used.is_empty() && 2 * used.iter().filter(is_far).count() >= used.len()
 }
 

@@ -21,7 +21,7 @@ const EVERYDAY: f64 = 3.0;
 const TAKES_BACK: f64 = -0.5;
 
 /// What the logs that were fitted say.
-pub struct Decision {
+pub(in crate::gap) struct Decision {
     /// What is found.
     pub verdict: Verdict,
     /// What is asserted, by decreasing evidence.
@@ -72,7 +72,12 @@ struct Decided {
 
 /// Decides on what a search found.
 #[must_use]
-pub fn decide(search: &Search<'_>, none: &Found, found: &Found, tried: &[Tried]) -> Decision {
+pub(in crate::gap) fn decide(
+    search: &Search<'_>,
+    none: &Found,
+    found: &Found,
+    tried: &[Tried],
+) -> Decision {
     let tunables = &search.design.tunables;
     let has_baseline = search.records.iter().any(|record| record.kind == RecordKind::Before);
     let n = search.design.joints.len();
@@ -82,9 +87,12 @@ pub fn decide(search: &Search<'_>, none: &Found, found: &Found, tried: &[Tried])
         (0..found.effects.len()).map(|k| weigh(search, none, found, k, tried)).collect();
     let least = if has_baseline { tunables.least_change } else { tunables.least_share };
     let everyday: Vec<f64> = (0..n).map(|j| found.fit.everyday(search.design, j)).collect();
-    let left = |fit: &Found, joint: usize| match has_baseline {
-        true => fit.fit.changed(search.design, joint),
-        false => fit.fit.everyday(search.design, joint),
+    let left = |fit: &Found, joint: usize| {
+        if has_baseline {
+            fit.fit.changed(search.design, joint)
+        } else {
+            fit.fit.everyday(search.design, joint)
+        }
     };
     let mut kept: Vec<Candidate> = Vec::new();
     let mut decision = Decided::default();
@@ -105,9 +113,10 @@ pub fn decide(search: &Search<'_>, none: &Found, found: &Found, tried: &[Tried])
             let at = joint.map_or(id.to_owned(), |joint| format!("{id} of joint {}", joint + 1));
             let least = joint.map_or(least, |joint| {
                 let left = left(found, joint);
-                let over = match left > tunables.usual_error {
-                    true => tunables.over_unexplained,
-                    false => tunables.over_everyday,
+                let over = if left > tunables.usual_error {
+                    tunables.over_unexplained
+                } else {
+                    tunables.over_everyday
                 };
                 least.max(over * left)
             });
@@ -236,7 +245,7 @@ fn parameters(fitted: &[&Fitted]) -> Vec<Estimated> {
 
 /// Parameters of all pieces of a fit.
 #[must_use]
-pub fn fit_effects(fit: &Fit) -> Vec<Fitted> {
+pub(in crate::gap) fn fit_effects(fit: &Fit) -> Vec<Fitted> {
     let mut from = fit.mean.len() - fit.hypothesis.columns();
     let mut all = Vec::new();
     for member in &fit.hypothesis.members {
@@ -309,7 +318,7 @@ fn class(search: &Search<'_>, found: &Found, number: usize, tried: &[Tried]) -> 
         let near = of.score > found.score - search.design.tunables.class_nats;
         if let [other] = others[..]
             && of.ids.len() == ids.len()
-            && ids.iter().all(|id| is_rest(id))
+            && ids.iter().all(is_rest)
             && near
             && !class.contains(&other)
         {
@@ -359,6 +368,6 @@ fn noisy_joints(search: &Search<'_>, trail: &mut Vec<Entry>) -> Vec<usize> {
 
 /// Whether a parameter may be named at all under a trust.
 #[must_use]
-pub fn may_name_parameters(trust: Trust) -> bool {
+pub(in crate::gap) fn may_name_parameters(trust: Trust) -> bool {
     trust != Trust::Unknown
 }

@@ -21,7 +21,7 @@ const REFINED: usize = 4;
 
 /// Pieces of one effect.
 #[derive(Clone)]
-pub struct Candidate {
+pub(in crate::gap) struct Candidate {
     /// The effect.
     pub effect: &'static Effect,
     /// Its pieces.
@@ -32,7 +32,7 @@ pub struct Candidate {
 
 /// A set of effects.
 #[derive(Clone)]
-pub struct Found {
+pub(in crate::gap) struct Found {
     /// The effects.
     pub effects: Vec<Candidate>,
     /// The fit with them.
@@ -48,7 +48,7 @@ impl Found {
 }
 
 /// A set that was fitted: ids of its effects, and the logarithm of the odds against no effect.
-pub struct Tried {
+pub(in crate::gap) struct Tried {
     /// Ids.
     pub ids: Vec<&'static str>,
     /// Odds \[nats\].
@@ -56,7 +56,7 @@ pub struct Tried {
 }
 
 /// A search.
-pub struct Search<'a> {
+pub(in crate::gap) struct Search<'a> {
     /// Records.
     pub records: &'a [Record<'a>],
     /// Design.
@@ -70,7 +70,7 @@ pub struct Search<'a> {
 impl<'a> Search<'a> {
     /// A search for effects.
     #[must_use]
-    pub fn new(
+    pub(in crate::gap) fn new(
         records: &'a [Record<'a>],
         design: &'a Design,
         effects: &[&'static Effect],
@@ -92,7 +92,7 @@ impl<'a> Search<'a> {
 impl Search<'_> {
     /// The fit without effects.
     #[must_use]
-    pub fn none_of(design: &Design) -> Option<Found> {
+    pub(in crate::gap) fn none_of(design: &Design) -> Option<Found> {
         let fit = fitted(design, Hypothesis::default(), usual(design), FIRST, false)?;
         Some(Found { effects: Vec::new(), score: 0.0, fit })
     }
@@ -155,7 +155,7 @@ impl Search<'_> {
 
     /// The fit with a set of effects, from sizes.
     #[must_use]
-    pub fn with(&self, base: &Found, effects: Vec<Candidate>) -> Option<Found> {
+    pub(in crate::gap) fn with(&self, base: &Found, effects: Vec<Candidate>) -> Option<Found> {
         let pieces = effects.iter().flat_map(|of| of.pieces.iter().cloned());
         let members = pieces.map(|piece| Member::new(self.design, self.records, piece)).collect();
         let hypothesis = Hypothesis { members };
@@ -175,7 +175,7 @@ impl Search<'_> {
     /// The best set: effects are added while the evidence grows, then joints and effects that became
     /// needless are taken out; with all sets that were fitted.
     #[must_use]
-    pub fn best(&self, none: Found) -> (Found, Found, Vec<Tried>) {
+    pub(in crate::gap) fn best(&self, none: Found) -> (Found, Found, Vec<Tried>) {
         let least = self.design.tunables.least_nats;
         let mut tried = vec![Tried { ids: Vec::new(), score: 0.0 }];
         let mut best: Option<Found> = None;
@@ -220,7 +220,12 @@ impl Search<'_> {
 
     /// The set without the effects that have one of some ids.
     #[must_use]
-    pub fn without_ids(&self, none: &Found, found: &Found, ids: &[&str]) -> Option<Found> {
+    pub(in crate::gap) fn without_ids(
+        &self,
+        none: &Found,
+        found: &Found,
+        ids: &[&str],
+    ) -> Option<Found> {
         let mut effects = found.effects.clone();
         effects.retain(|of| !ids.contains(&of.effect.id));
         if effects.is_empty() { Some(none.clone()) } else { self.with(none, effects) }
@@ -228,7 +233,12 @@ impl Search<'_> {
 
     /// The set without one of its effects.
     #[must_use]
-    pub fn without(&self, none: &Found, found: &Found, effect: usize) -> Option<Found> {
+    pub(in crate::gap) fn without(
+        &self,
+        none: &Found,
+        found: &Found,
+        effect: usize,
+    ) -> Option<Found> {
         let mut effects = found.effects.clone();
         effects.remove(effect);
         self.with(none, effects)
@@ -236,7 +246,7 @@ impl Search<'_> {
 
     /// The set without one piece of one of its effects.
     #[must_use]
-    pub fn without_joint(
+    pub(in crate::gap) fn without_joint(
         &self,
         none: &Found,
         found: &Found,

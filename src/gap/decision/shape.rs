@@ -9,7 +9,7 @@ use crate::gap::design::PieceRows;
 use crate::gap::posterior::Gains;
 
 /// Levels: each halves the steps and doubles the frequencies.
-const LEVELS: usize = 8;
+const LEVELS: i32 = 8;
 /// The lowest limit, in bins.
 const LOWEST: usize = 24;
 /// Rounds at one level.
@@ -19,7 +19,7 @@ const LEAST: f64 = 0.02;
 
 /// How a coordinate is moved.
 #[derive(Clone, Copy, Debug)]
-pub struct Move {
+pub(in crate::gap) struct Move {
     /// Number of the coordinate.
     pub coordinate: usize,
     /// First step: a factor less 1 or a difference.
@@ -30,7 +30,11 @@ pub struct Move {
 
 /// The moves of an effect's shape coordinates.
 #[must_use]
-pub fn moves(effect: &Effect, records: &[Record<'_>], piece: &PieceRows) -> Vec<Move> {
+pub(in crate::gap) fn moves(
+    effect: &Effect,
+    records: &[Record<'_>],
+    piece: &PieceRows,
+) -> Vec<Move> {
     let Some(first) = records.first() else { return Vec::new() };
     let scale = first.motion.scale(piece.joint.unwrap_or(0));
     let mut all = Vec::new();
@@ -56,14 +60,14 @@ pub fn moves(effect: &Effect, records: &[Record<'_>], piece: &PieceRows) -> Vec<
 
 /// The lowest limit of frequencies \[Hz\].
 #[must_use]
-pub fn lowest(records: &[Record<'_>]) -> f64 {
+pub(in crate::gap) fn lowest(records: &[Record<'_>]) -> f64 {
     let lasts = records.first().map_or(1.0, |r| r.motion.step() * r.motion.rows() as f64);
     LOWEST as f64 / lasts
 }
 
 /// The piece at the best shape that the moves reach.
 #[must_use]
-pub fn refined(
+pub(in crate::gap) fn refined(
     gains: &Gains<'_>,
     piece: &PieceRows,
     moves: &[Move],
@@ -79,7 +83,7 @@ pub fn refined(
     let mut below = lowest;
     for level in 0..LEVELS {
         let mut most = gain_of(&best, below);
-        let shrink = 0.5_f64.powi(level as i32);
+        let shrink = 0.5_f64.powi(level);
         for _ in 0..ROUNDS {
             let mut improved = false;
             for of in moves {

@@ -19,7 +19,7 @@ const LEAST: f64 = 4.0;
 
 /// The best windows of an effect at a joint beside a fit.
 #[must_use]
-pub fn windows(
+pub(in crate::gap) fn windows(
     records: &[Record<'_>],
     design: &Design,
     gains: &Gains<'_>,

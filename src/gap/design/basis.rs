@@ -3,6 +3,9 @@
 use crate::arm::effects::{Motion, Variable};
 use crate::gap::tunables::Tunables;
 
+/// Values of functions: by function, by motion, by row.
+pub(super) type Functions = Vec<Vec<Vec<f64>>>;
+
 /// Angles and times in which functions fade after a reversal, over the usual ones.
 const ANGLES: [f64; 4] = [0.33, 1.0, 3.0, 10.0];
 const TIMES: [f64; 2] = [1.0, 3.0];
@@ -123,7 +126,7 @@ pub(super) fn functions(
     motions: &[&Motion<'_>],
     joint: usize,
     tunables: &Tunables,
-) -> Vec<Vec<Vec<f64>>> {
+) -> Functions {
     if variable == Variable::Reversal {
         return after_reversals(motions, joint, tunables);
     }
@@ -146,11 +149,7 @@ pub(super) fn functions(
 }
 
 /// Functions that fade after each reversal, with the sense of the motion.
-fn after_reversals(
-    motions: &[&Motion<'_>],
-    joint: usize,
-    tunables: &Tunables,
-) -> Vec<Vec<Vec<f64>>> {
+fn after_reversals(motions: &[&Motion<'_>], joint: usize, tunables: &Tunables) -> Functions {
     let mut all = fades(motions, joint, tunables);
     for fade in &mut all {
         for (series, m) in fade.iter_mut().zip(motions) {
@@ -162,11 +161,7 @@ fn after_reversals(
 
 /// What is left of 1 after each reversal: by function, by motion, by row.
 #[must_use]
-pub(super) fn fades(
-    motions: &[&Motion<'_>],
-    joint: usize,
-    tunables: &Tunables,
-) -> Vec<Vec<Vec<f64>>> {
+pub(super) fn fades(motions: &[&Motion<'_>], joint: usize, tunables: &Tunables) -> Functions {
     let since: Vec<[Vec<f64>; 2]> = motions.iter().map(|m| since_reversal(m, joint)).collect();
     let usual = [tunables.fade_angle, tunables.fade_time];
     let all = ANGLES.iter().map(|by| (0, *by)).chain(TIMES.iter().map(|by| (1, *by)));

@@ -13,7 +13,7 @@ const STEP: f64 = 1e-3;
 pub(super) type Reached = Vec<(usize, Vec<f64>)>;
 
 /// A column: torques, and what is known of its factor before the measurement.
-pub struct Column {
+pub(in crate::gap) struct Column {
     /// By record, the joints that it reaches with their series \[Nm\].
     pub series: Vec<Vec<(usize, Vec<f64>)>>,
     /// Expected factor.
@@ -23,7 +23,7 @@ pub struct Column {
 }
 
 /// Columns of one effect at one joint, for one choice of its shape.
-pub struct Piece {
+pub(in crate::gap) struct Piece {
     /// Joint, from 0; `None` of the robot.
     pub joint: Option<usize>,
     /// Values of all coordinates: 1 for a linear one stands for its usual size.

@@ -1,6 +1,6 @@
 //! Everyday errors: what every robot has beside its model. They are nuisances, not findings.
 
-use super::basis::{Range, functions, rms, roughness};
+use super::basis::{Functions, Range, functions, rms, roughness};
 use super::joint::Set;
 use crate::arm::effects::{Motion, Response, Variable};
 use crate::gap::data::{Record, RecordKind};
@@ -37,7 +37,7 @@ fn friction(m: &Motion<'_>, joint: usize) -> f64 {
 }
 
 /// Variables of smooth everyday errors.
-pub const SMOOTH: [Variable; 6] = [
+pub(in crate::gap) const SMOOTH: [Variable; 6] = [
     Variable::Reversal,
     Variable::Speed,
     Variable::Position,
@@ -98,11 +98,7 @@ pub(super) fn everyday(records: &[Record<'_>], joint: usize, tunables: &Tunables
 }
 
 /// Smooth functions of another joint's position, times those of the own.
-fn of_other_positions(
-    motions: &[&Motion<'_>],
-    joint: usize,
-    tunables: &Tunables,
-) -> Vec<Vec<Vec<f64>>> {
+fn of_other_positions(motions: &[&Motion<'_>], joint: usize, tunables: &Tunables) -> Functions {
     let dof = motions.first().map_or(0, |m| m.model.dof);
     let range = |joint: usize| Range::of(motions.iter().flat_map(|m| &m.q[joint]));
     let own = range(joint);

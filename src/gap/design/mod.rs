@@ -12,7 +12,7 @@ mod parameters;
 mod piece;
 mod problem;
 
-pub use everyday::Group;
-pub use joint::{Cell, JointDesign, Set};
-pub use piece::{Clock, PieceRows, Whole, link_pieces, piece_rows};
-pub use problem::Design;
+pub(in crate::gap) use everyday::Group;
+pub(in crate::gap) use joint::{Cell, JointDesign, Set};
+pub(in crate::gap) use piece::{Clock, PieceRows, Whole, link_pieces, piece_rows};
+pub(in crate::gap) use problem::Design;

@@ -109,9 +109,10 @@ fn prior(records: &[Record<'_>], spread: &Spread, tunables: &Tunables) -> Parame
         let scale = first.scale(joint);
         let largest = motions.iter().map(|m| m.scale(joint).torque[1]).fold(0.0, f64::max);
         // A model without rotors lacks as much as its links have.
-        let rotor = match scale.rotor > 0.0 {
-            true => spread.inertia * scale.rotor,
-            false => tunables.missing_rotor * scale.inertia,
+        let rotor = if scale.rotor > 0.0 {
+            spread.inertia * scale.rotor
+        } else {
+            tunables.missing_rotor * scale.inertia
         };
         let sizes = [
             rotor,

@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-use super::basis::{fades, functions, rms};
+use super::basis::{Functions, fades, functions, rms};
 use super::column::{Column, Piece, columns_at, pieces};
 use super::joint::Set;
 use super::problem::Design;
@@ -42,7 +42,7 @@ pub enum Clock {
 }
 
 /// An effect that acts all the time, to be cut to windows.
-pub struct Whole {
+pub(in crate::gap) struct Whole {
     effect: &'static Effect,
     joint: Option<usize>,
     shape: Vec<f64>,
@@ -52,7 +52,11 @@ pub struct Whole {
 impl Whole {
     /// The effect at a joint; its last coordinates are start, end and period of the window.
     #[must_use]
-    pub fn new(records: &[Record<'_>], effect: &'static Effect, joint: usize) -> Option<Whole> {
+    pub(in crate::gap) fn new(
+        records: &[Record<'_>],
+        effect: &'static Effect,
+        joint: usize,
+    ) -> Option<Whole> {
         let scale = records.first()?.motion.scale(joint);
         let mut shape: Vec<f64> = effect.coordinates.iter().map(|c| (c.usual)(&scale)).collect();
         let n = shape.len();
@@ -64,7 +68,7 @@ impl Whole {
 
     /// The effect within a window \[s\].
     #[must_use]
-    pub fn within(
+    pub(in crate::gap) fn within(
         &self,
         design: &Design,
         records: &[Record<'_>],
@@ -109,11 +113,15 @@ impl Whole {
 const LONG: f64 = 1e9;
 
 /// All pieces of the effects that may be found.
-pub type Pieces = Vec<PieceRows>;
+pub(in crate::gap) type Pieces = Vec<PieceRows>;
 
 /// The pieces of the effects on their first grids of shapes.
 #[must_use]
-pub fn piece_rows(design: &Design, records: &[Record<'_>], wanted: &[&'static Effect]) -> Pieces {
+pub(in crate::gap) fn piece_rows(
+    design: &Design,
+    records: &[Record<'_>],
+    wanted: &[&'static Effect],
+) -> Pieces {
     let n = records.first().map_or(0, |record| record.motion.model.dof);
     let all: Vec<(&'static Effect, usize)> = wanted
         .iter()
@@ -137,7 +145,7 @@ pub fn piece_rows(design: &Design, records: &[Record<'_>], wanted: &[&'static Ef
 
 /// Pieces of the parameters of each link.
 #[must_use]
-pub fn link_pieces(design: &Design, effect: &'static Effect) -> Pieces {
+pub(in crate::gap) fn link_pieces(design: &Design, effect: &'static Effect) -> Pieces {
     let n = design.joints.len();
     // What the last link has more is what it carries.
     (0..n.saturating_sub(1))
@@ -235,7 +243,7 @@ impl PieceRows {
         &self,
         design: &Design,
         records: &[Record<'_>],
-        functions: &dyn Fn(&[&Motion<'_>], usize) -> Vec<Vec<Vec<f64>>>,
+        functions: &dyn Fn(&[&Motion<'_>], usize) -> Functions,
     ) -> Vec<(usize, DMatrix<f64>)> {
         let motions: Vec<&Motion<'_>> = records.iter().map(|record| &record.motion).collect();
         let of_joint = |joint: usize| {
@@ -259,12 +267,7 @@ impl PieceRows {
 
     /// A law of friction after each reversal, from which on it builds up: of the size that is usual of
     /// dry friction, over that of a form.
-    fn after_reversals(
-        &self,
-        design: &Design,
-        motions: &[&Motion<'_>],
-        joint: usize,
-    ) -> Vec<Vec<Vec<f64>>> {
+    fn after_reversals(&self, design: &Design, motions: &[&Motion<'_>], joint: usize) -> Functions {
         if !matches!(self.effect.form, Form::Law { dissipates: true, .. }) {
             return Vec::new();
         }

@@ -38,7 +38,7 @@ struct Squares {
 
 /// The budget of each joint, then of all.
 #[must_use]
-pub fn budget(
+pub(in crate::gap) fn budget(
     records: &[Record<'_>],
     nominal: &Model,
     [refit, improved]: [&Improved; 2],

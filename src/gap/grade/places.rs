@@ -14,7 +14,7 @@ use crate::gap::model::Improved;
 /// effects `ids` as well (without effects: from the nominal model), then those of each joint's
 /// regimes. The regimes of a quantity add up to their joint's share, the effects of a regime to
 /// the regime's.
-pub fn places(
+pub(in crate::gap) fn places(
     records: &[Record<'_>],
     nominal: &Model,
     [refit, improved]: [&Improved; 2],
@@ -35,7 +35,7 @@ pub fn places(
 }
 
 /// Shares of the joints, and of their regimes, in what a model misses.
-pub fn places_missed(records: &[Record<'_>], model: &Improved) -> Vec<Place> {
+pub(in crate::gap) fn places_missed(records: &[Record<'_>], model: &Improved) -> Vec<Place> {
     let records: Vec<&Record<'_>> =
         records.iter().filter(|record| record.kind == RecordKind::Mean).collect();
     let Some(first) = records.first() else { return Vec::new() };

@@ -8,6 +8,8 @@ use crate::gap::design::PieceRows;
 
 /// Step over which parameters are differentiated, in deviations.
 const DIFFERENCE: f64 = 1e-3;
+/// Deviations beyond which a bound is missed by far.
+const FAR: f64 = 1e3;
 
 /// An effect at a joint, with its parameters.
 #[derive(Clone)]
@@ -45,7 +47,8 @@ impl Fitted {
         let values = self.parameters.iter().zip(&self.deviations);
         let beyond = self.effect.parameters.iter().zip(values).map(|(parameter, (value, sd))| {
             let [low, high] = parameter.bounds;
-            (low - value).max(value - high).max(0.0) / sd.max(f64::MIN_POSITIVE)
+            let outside = (low - value).max(value - high).max(0.0);
+            if outside > 0.0 { (outside / sd).min(FAR) } else { 0.0 }
         });
         beyond.fold(0.0, f64::max)
     }

@@ -3,7 +3,7 @@
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 /// Marginal likelihoods with columns whose factors have normal priors about 0.
-pub struct Evidence {
+pub(in crate::gap) struct Evidence {
     /// `ΦᵀWΦ` and `ΦᵀWy`, the parameters marginalised.
     a: DMatrix<f64>,
     b: DVector<f64>,
@@ -12,7 +12,7 @@ pub struct Evidence {
 }
 
 /// Factors of some columns.
-pub struct Estimate {
+pub(in crate::gap) struct Estimate {
     /// Their expected values.
     pub mean: DVector<f64>,
     /// Their covariance.
@@ -23,7 +23,11 @@ impl Evidence {
     /// From weighted products of the difference, `parameters` parameters (in deviations) and columns;
     /// `None` if these are no numbers.
     #[must_use]
-    pub fn new(gram: &DMatrix<f64>, parameters: usize, sds: DVector<f64>) -> Option<Evidence> {
+    pub(in crate::gap) fn new(
+        gram: &DMatrix<f64>,
+        parameters: usize,
+        sds: DVector<f64>,
+    ) -> Option<Evidence> {
         let (first, count) = (1 + parameters, sds.len());
         let view = |row: usize, column: usize, rows: usize, columns: usize| {
             gram.view((row, column), (rows, columns)).into_owned()
@@ -38,7 +42,7 @@ impl Evidence {
 
     /// Logarithm of how much more probable the measurement is with the columns than without.
     #[must_use]
-    pub fn gain(&self, columns: &[usize]) -> f64 {
+    pub(in crate::gap) fn gain(&self, columns: &[usize]) -> f64 {
         let Some(factor) = self.factor(columns) else { return f64::NEG_INFINITY };
         let right =
             DVector::from_fn(columns.len(), |k, _| self.sds[columns[k]] * self.b[columns[k]]);
@@ -48,7 +52,7 @@ impl Evidence {
 
     /// The columns' factors.
     #[must_use]
-    pub fn estimate(&self, columns: &[usize]) -> Option<Estimate> {
+    pub(in crate::gap) fn estimate(&self, columns: &[usize]) -> Option<Estimate> {
         let inverse = self.factor(columns)?.inverse();
         let sd = |k: usize| self.sds[columns[k]];
         let n = columns.len();

@@ -6,12 +6,11 @@ use rayon::prelude::*;
 use super::hypothesis::{Extra, Hypothesis};
 use super::reduced::{Reduced, variance};
 use super::sizes::{JointSizes, Size, Sizes, without_everyday};
-use crate::arm::effects::Variable;
 use crate::gap::design::{Cell, Design, Group, JointDesign, Set};
 
 /// The logs with a hypothesis.
 #[derive(Clone)]
-pub struct Fit {
+pub(in crate::gap) struct Fit {
     /// The hypothesis.
     pub hypothesis: Hypothesis,
     /// Sizes of everyday errors.
@@ -36,7 +35,7 @@ const LEAST_CURVATURE: f64 = 0.3;
 /// Fits a hypothesis from sizes, with `rounds` steps of the sizes. Joints that the hypothesis does
 /// not reach keep their sizes where `touched_only`.
 #[must_use]
-pub fn fitted(
+pub(in crate::gap) fn fitted(
     design: &Design,
     hypothesis: Hypothesis,
     sizes: Sizes,
@@ -48,7 +47,11 @@ pub fn fitted(
 
 /// Fits a hypothesis with what a written model has: neither everyday errors nor lags of the torques.
 #[must_use]
-pub fn fitted_as_written(design: &Design, hypothesis: Hypothesis, rounds: usize) -> Option<Fit> {
+pub(in crate::gap) fn fitted_as_written(
+    design: &Design,
+    hypothesis: Hypothesis,
+    rounds: usize,
+) -> Option<Fit> {
     fit_from(design, hypothesis, (without_everyday(design), 0.0), rounds, false)
 }
 

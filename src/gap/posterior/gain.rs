@@ -8,7 +8,7 @@ use super::reduced::variance;
 use crate::gap::design::{Design, PieceRows};
 
 /// A fit that answers what pieces would add.
-pub struct Gains<'a> {
+pub(in crate::gap) struct Gains<'a> {
     design: &'a Design,
     fit: &'a Fit,
     /// By joint.
@@ -25,7 +25,7 @@ struct Weighted {
 impl<'a> Gains<'a> {
     /// Prepares the rows of a fit.
     #[must_use]
-    pub fn new(design: &'a Design, fit: &'a Fit) -> Gains<'a> {
+    pub(in crate::gap) fn new(design: &'a Design, fit: &'a Fit) -> Gains<'a> {
         let parameters = design.parameters.count();
         let weighted = (0..design.joints.len())
             .into_par_iter()
@@ -125,7 +125,7 @@ impl<'a> Gains<'a> {
     /// Logarithm of how much more probable the logs are with a piece, over the amplitudes
     /// that are tried.
     #[must_use]
-    pub fn of(&self, piece: &PieceRows, below: f64) -> f64 {
+    pub(in crate::gap) fn of(&self, piece: &PieceRows, below: f64) -> f64 {
         let products = self.products(&[piece], below);
         let spread = self.design.tunables.amplitude_spread;
         products.first().map_or(f64::NEG_INFINITY, |of| best(of, piece, spread))
@@ -133,7 +133,7 @@ impl<'a> Gains<'a> {
 
     /// Gains of all pieces, and what the columns gain by themselves that each brings along.
     #[must_use]
-    pub fn of_all(&self, pieces: &[PieceRows], below: f64) -> Vec<[f64; 2]> {
+    pub(in crate::gap) fn of_all(&self, pieces: &[PieceRows], below: f64) -> Vec<[f64; 2]> {
         let spread = self.design.tunables.amplitude_spread;
         let gains = |pieces: &[PieceRows]| -> Vec<[f64; 2]> {
             let of: Vec<&PieceRows> = pieces.iter().collect();

@@ -7,7 +7,7 @@ use crate::gap::design::{Design, PieceRows};
 
 /// A piece of an effect with functions for the form of its law.
 #[derive(Clone)]
-pub struct Member {
+pub(in crate::gap) struct Member {
     /// The piece.
     pub piece: PieceRows,
     /// By joint, the rows of functions of its form, of unit size.
@@ -16,7 +16,7 @@ pub struct Member {
 
 /// A set of effects.
 #[derive(Clone, Default)]
-pub struct Hypothesis {
+pub(in crate::gap) struct Hypothesis {
     /// Pieces.
     pub members: Vec<Member>,
 }
@@ -41,14 +41,18 @@ pub(super) struct Extra {
 impl Member {
     /// A piece with its form.
     #[must_use]
-    pub fn new(design: &Design, records: &[Record<'_>], piece: PieceRows) -> Member {
+    pub(in crate::gap) fn new(design: &Design, records: &[Record<'_>], piece: PieceRows) -> Member {
         let forms = piece.forms(design, records);
         Member { piece, forms }
     }
 
     /// A piece as it is written, which is not right just after reversals.
     #[must_use]
-    pub fn as_written(design: &Design, records: &[Record<'_>], piece: PieceRows) -> Member {
+    pub(in crate::gap) fn as_written(
+        design: &Design,
+        records: &[Record<'_>],
+        piece: PieceRows,
+    ) -> Member {
         let forms = piece.forms_after_reversals(design, records);
         Member { piece, forms }
     }
@@ -57,13 +61,13 @@ impl Member {
 impl Hypothesis {
     /// Number of columns of effects.
     #[must_use]
-    pub fn columns(&self) -> usize {
+    pub(in crate::gap) fn columns(&self) -> usize {
         self.members.iter().map(|member| member.piece.prior.len()).sum()
     }
 
     /// Whether it changes the torque of a joint.
     #[must_use]
-    pub fn reaches(&self, joint: usize) -> bool {
+    pub(in crate::gap) fn reaches(&self, joint: usize) -> bool {
         self.members.iter().any(|member| member.piece.rows.iter().any(|(of, _)| *of == joint))
     }
 

@@ -4,7 +4,7 @@
 //! Linear Gaussian model by joint: `y = P θ + L φ + H c + n`. Parameters θ and factors c are common
 //! to the joints; everyday errors φ are a joint's own and are marginalised there first. Sizes of the
 //! groups of everyday errors maximise the marginal likelihood times their prior (empirical Bayes;
-//! D. MacKay, Bayesian interpolation, Neural Computation 4, 1992).
+//! D. `MacKay`, Bayesian interpolation, Neural Computation 4, 1992).
 
 mod evidence;
 mod fit;
@@ -14,8 +14,8 @@ mod reduced;
 mod shares;
 mod sizes;
 
-pub use evidence::Evidence;
-pub use fit::{Fit, fitted, fitted_as_written};
-pub use gain::Gains;
-pub use hypothesis::{Hypothesis, Member};
-pub use sizes::{JointSizes, Size, Sizes, usual};
+pub(in crate::gap) use evidence::Evidence;
+pub(in crate::gap) use fit::{Fit, fitted, fitted_as_written};
+pub(in crate::gap) use gain::Gains;
+pub(in crate::gap) use hypothesis::{Hypothesis, Member};
+pub(in crate::gap) use sizes::{Sizes, usual};

@@ -15,25 +15,28 @@ impl Fit {
     /// Everyday errors of a joint in the logs as they are now, of its torque: root mean square of the
     /// smooth functions and of what no function explains.
     #[must_use]
-    pub fn everyday(&self, design: &Design, joint: usize) -> f64 {
+    pub(in crate::gap) fn everyday(&self, design: &Design, joint: usize) -> f64 {
         let smooth = self.smooth(design, joint, &is_everyday);
-        (smooth + self.error(design, joint, |range| self.sizes[joint].error[range].value.powi(2)))
-            .sqrt()
+        (smooth + error(design, joint, |range| self.sizes[joint].error[range].value.powi(2))).sqrt()
     }
 
     /// What of them the baseline does not have.
     #[must_use]
-    pub fn changed(&self, design: &Design, joint: usize) -> f64 {
+    pub(in crate::gap) fn changed(&self, design: &Design, joint: usize) -> f64 {
         let is_of_day = |group: Group| matches!(group, Group::Day(_));
         let size = |range: usize| self.sizes[joint].error[range].value.powi(2);
         let more = |range: usize| (size(range) - size(range + BASELINE)).max(0.0);
-        (self.smooth(design, joint, &is_of_day) + self.error(design, joint, more)).sqrt()
+        (self.smooth(design, joint, &is_of_day) + error(design, joint, more)).sqrt()
     }
 
     /// The variable of the largest smooth error of a joint, if smooth errors are most of it.
     #[must_use]
-    pub fn largest_variable(&self, design: &Design, joint: usize) -> Option<Variable> {
-        let error = self.error(design, joint, |range| self.sizes[joint].error[range].value.powi(2));
+    pub(in crate::gap) fn largest_variable(
+        &self,
+        design: &Design,
+        joint: usize,
+    ) -> Option<Variable> {
+        let error = error(design, joint, |range| self.sizes[joint].error[range].value.powi(2));
         let variables = design.joints[joint].groups.iter().filter_map(|group| match group {
             Group::Smooth(variable) => Some(*variable),
             _ => None,
@@ -49,13 +52,23 @@ impl Fit {
 
     /// Share of members in a joint's torque in the logs as they are now: root mean square.
     #[must_use]
-    pub fn share(&self, design: &Design, members: Range<usize>, joint: usize) -> f64 {
+    pub(in crate::gap) fn share(
+        &self,
+        design: &Design,
+        members: Range<usize>,
+        joint: usize,
+    ) -> f64 {
         self.product(design, [members.clone(), members], joint).sqrt()
     }
 
     /// Correlation of the torques of two ranges of members at a joint.
     #[must_use]
-    pub fn correlation(&self, design: &Design, [a, b]: [Range<usize>; 2], joint: usize) -> f64 {
+    pub(in crate::gap) fn correlation(
+        &self,
+        design: &Design,
+        [a, b]: [Range<usize>; 2],
+        joint: usize,
+    ) -> f64 {
         let sizes = [&a, &b].map(|of| self.share(design, of.clone(), joint));
         let product = self.product(design, [a, b], joint);
         product / (sizes[0] * sizes[1]).max(f64::MIN_POSITIVE)
@@ -115,15 +128,15 @@ impl Fit {
         let power: f64 = now(of).map(|cell| cell.power * cell.rows.len() as f64).sum();
         smooth.norm_squared() / power.max(f64::MIN_POSITIVE)
     }
+}
 
-    /// Mean square of an error that is given by range of frequencies, of the torque's.
-    fn error(&self, design: &Design, joint: usize, square: impl Fn(usize) -> f64) -> f64 {
-        let (sum, power) = now(&design.joints[joint]).fold((0.0, 0.0), |(sum, power), cell| {
-            let of_cell = cell.power * cell.rows.len() as f64;
-            (sum + square(cell.range) * of_cell, power + of_cell)
-        });
-        sum / power.max(f64::MIN_POSITIVE)
-    }
+/// Mean square of an error that is given by range of frequencies, of the torque's.
+fn error(design: &Design, joint: usize, square: impl Fn(usize) -> f64) -> f64 {
+    let (sum, power) = now(&design.joints[joint]).fold((0.0, 0.0), |(sum, power), cell| {
+        let of_cell = cell.power * cell.rows.len() as f64;
+        (sum + square(cell.range) * of_cell, power + of_cell)
+    });
+    sum / power.max(f64::MIN_POSITIVE)
 }
 
 /// Place of the baseline's sizes behind those of the logs as they are now.

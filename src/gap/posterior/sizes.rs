@@ -6,7 +6,7 @@ use crate::gap::tunables::Tunables;
 
 /// A size with a log-normal prior.
 #[derive(Clone, Copy, Debug)]
-pub struct Size {
+pub(in crate::gap) struct Size {
     /// Its value.
     pub value: f64,
     /// Median of the prior.
@@ -22,7 +22,7 @@ impl Size {
 
     /// Logarithm of the prior, up to a constant.
     #[must_use]
-    pub fn log_prior(&self) -> f64 {
+    pub(in crate::gap) fn log_prior(&self) -> f64 {
         -0.5 * ((self.value / self.median).ln() / self.spread).powi(2)
     }
 
@@ -40,7 +40,7 @@ impl Size {
 const LONGEST: f64 = 1.2;
 /// Sizes of a joint.
 #[derive(Clone, Debug)]
-pub struct JointSizes {
+pub(in crate::gap) struct JointSizes {
     /// Groups of everyday errors.
     pub groups: Vec<(Group, Size)>,
     /// Share of the torque that no function explains, in logs now and in the baseline; noise of
@@ -49,12 +49,12 @@ pub struct JointSizes {
 }
 
 /// Sizes of all joints.
-pub type Sizes = Vec<JointSizes>;
+pub(in crate::gap) type Sizes = Vec<JointSizes>;
 
 impl JointSizes {
     /// The prior medians.
     #[must_use]
-    pub fn usual(design: &JointDesign, tunables: &Tunables) -> JointSizes {
+    pub(in crate::gap) fn usual(design: &JointDesign, tunables: &Tunables) -> JointSizes {
         let t = tunables;
         let mut groups: Vec<(Group, Size)> = Vec::new();
         for group in &design.groups {
@@ -79,7 +79,7 @@ impl JointSizes {
 
     /// The size of a group; 1 for one without a size.
     #[must_use]
-    pub fn of(&self, group: Group) -> f64 {
+    pub(in crate::gap) fn of(&self, group: Group) -> f64 {
         self.groups.iter().find(|(of, _)| *of == group).map_or(1.0, |(_, size)| size.value)
     }
 
@@ -89,14 +89,14 @@ impl JointSizes {
         match self.groups.iter_mut().find(|(of, _)| *of == Group::Form(number)) {
             Some((_, size)) => size.median = median,
             None => {
-                self.groups.push((Group::Form(number), Size::new(median, tunables.form_spread)))
+                self.groups.push((Group::Form(number), Size::new(median, tunables.form_spread)));
             }
         }
     }
 
     /// Logarithm of the prior.
     #[must_use]
-    pub fn log_prior(&self) -> f64 {
+    pub(in crate::gap) fn log_prior(&self) -> f64 {
         let groups = self.groups.iter().map(|(_, size)| size.log_prior()).sum::<f64>();
         groups + self.error.iter().map(Size::log_prior).sum::<f64>()
     }
@@ -124,6 +124,6 @@ const NONE: f64 = 1e-6;
 
 /// The prior medians of all joints.
 #[must_use]
-pub fn usual(design: &Design) -> Sizes {
+pub(in crate::gap) fn usual(design: &Design) -> Sizes {
     design.joints.iter().map(|joint| JointSizes::usual(joint, &design.tunables)).collect()
 }

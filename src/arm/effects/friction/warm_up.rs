@@ -20,12 +20,7 @@ pub(in crate::arm::effects) const WARM_UP: Effect = Effect {
     source: "A. Bittencourt, E. Wernholt, S. Sander-Tavallaey, T. Brogårdh, An extended friction model to capture load and temperature effects in robot joints, IROS 2010",
     parameters: &[
         free("coulomb", "Nm", "Coulomb friction more at the start"),
-        bounded(
-            "viscous",
-            "Nm s/rad",
-            "viscous friction more at the start",
-            [0.0, f64::INFINITY],
-        ),
+        bounded("viscous", "Nm s/rad", "viscous friction more at the start", [0.0, f64::INFINITY]),
         bounded("time_constant", "s", "time in which 1/e of it is left", [30.0, 36000.0]),
     ],
     coordinates: &[
