@@ -2,13 +2,12 @@
 
 use super::data::{Record, RecordKind};
 use super::decision::{
-    Candidate, Decision, Finding, Found, Gate, Search, Tried, Verdict, decide, fit_effects,
-    may_name_parameters,
+    Candidate, Decision, Finding, Found, Gate, Search, Tried, Verdict, decide, may_name_parameters,
 };
 use super::design::Design;
 use super::diagnosis::Diagnosis;
 use super::grade::{JointGap, Shrink, budget, places, places_missed, shrink};
-use super::model::Improved;
+use super::model::{Fitted, Improved};
 use super::phase::Phase;
 use super::posterior::{Hypothesis, Member, fitted_as_written};
 use super::trust::Trust;
@@ -345,7 +344,7 @@ fn improved(
     };
     let count = design.parameters.mixing.ncols();
     let parameters = fit.mean.rows(0, count).into_owned();
-    Improved::new(model, &design.parameters.mixing, &parameters, &fit_effects(&fit))
+    Improved::new(model, &design.parameters.mixing, &parameters, &Fitted::of_fit(&fit))
 }
 
 impl Decision {

@@ -2,19 +2,16 @@
 
 use super::calibration::calibrated;
 use super::finding::{Estimated, Finding, Remainder, Verdict};
-use super::search::{Candidate, Found, Search, Tried};
+use super::search::{BEYOND, Candidate, Found, Search, Tried};
 use super::trail::{Entry, Gate};
 use crate::arm::effects::{Effect, Nature, Scope};
 use crate::gap::data::RecordKind;
 use crate::gap::design::Set;
 use crate::gap::model::Fitted;
-use crate::gap::posterior::Fit;
 use crate::gap::trust::Trust;
 
 /// Ids of effects that a class has at most: more are unknown.
 const LARGEST_CLASS: usize = 5;
-/// Deviations by which a parameter may be beyond what is possible.
-const BEYOND: f64 = 2.0;
 /// Standard deviations of what any robot has within which a parameter is no finding.
 const EVERYDAY: f64 = 3.0;
 /// Correlation from which on a law takes back another one: it is a form of that.
@@ -46,8 +43,8 @@ struct Weighed {
     size: f64,
     /// Evidence \[nats\].
     nats: f64,
-    /// Joints that it reaches, where it does not reach all.
-    reached: Vec<usize>,
+    /// The joint that an effect of the robot reaches, where it reaches no other.
+    only: Vec<usize>,
     class: Vec<&'static str>,
     probability: f64,
 }
@@ -188,7 +185,7 @@ impl Weighed {
         let joints: Vec<usize> = fitted.iter().filter_map(|of| of.joint).collect();
         Finding {
             effect: self.effect,
-            joints: if joints.is_empty() { self.reached.clone() } else { joints },
+            joints: if joints.is_empty() { self.only.clone() } else { joints },
             class: self.class.clone(),
             probability: self.probability,
             parameters: parameters(fitted),
@@ -243,21 +240,6 @@ fn parameters(fitted: &[&Fitted]) -> Vec<Estimated> {
     all
 }
 
-/// Parameters of all pieces of a fit.
-#[must_use]
-pub(in crate::gap) fn fit_effects(fit: &Fit) -> Vec<Fitted> {
-    let mut from = fit.mean.len() - fit.hypothesis.columns();
-    let mut all = Vec::new();
-    for member in &fit.hypothesis.members {
-        let own = member.piece.own;
-        let factors = fit.mean.rows(from, own).into_owned();
-        let covariance = fit.covariance.view((from, from), (own, own)).into_owned();
-        all.push(Fitted::new(&member.piece, &factors, &covariance));
-        from += member.piece.prior.len();
-    }
-    all
-}
-
 /// What the gates ask about an effect of a set.
 fn weigh(
     search: &Search<'_>,
@@ -272,7 +254,7 @@ fn weigh(
     let score = |less: Option<Found>| less.map_or(0.0, |less| less.score);
     let without =
         if found.effects.len() > 1 { score(search.without(none, found, number)) } else { 0.0 };
-    let all = fit_effects(&found.fit);
+    let all = Fitted::of_fit(&found.fit);
     let n = search.design.joints.len();
     let share = |members: std::ops::Range<usize>, joint: usize| {
         found.fit.share(search.design, members, joint)
@@ -294,13 +276,17 @@ fn weigh(
         WeighedPiece { member: first + k, fitted, share: size, nats }
     });
     let piece = &found.effects[number].pieces[0];
-    let is_part = effect.scope == Scope::Robot && piece.rows.len() < n;
+    // An effect of the robot that one joint alone has.
+    let only = match &piece.rows[..] {
+        [(joint, _)] if effect.scope == Scope::Robot => vec![*joint],
+        _ => Vec::new(),
+    };
     let class = class(search, found, number, tried);
     Weighed {
         effect,
         size: largest(first..first + count),
         nats: found.score - without,
-        reached: if is_part { piece.rows.iter().map(|(at, _)| *at).collect() } else { Vec::new() },
+        only,
         probability: calibrated(inclusion(effect.id, tried)),
         class,
         pieces: pieces.collect(),

@@ -9,7 +9,7 @@ mod trail;
 mod window;
 
 pub(super) use calibration::asserted;
-pub(in crate::gap) use decide::{Decision, decide, fit_effects, may_name_parameters};
+pub(in crate::gap) use decide::{Decision, decide, may_name_parameters};
 pub use finding::{Estimated, Finding, Place, Remainder, Verdict};
 pub(in crate::gap) use search::{Candidate, Found, Search, Tried};
 pub use trail::{Entry, Gate};

@@ -7,6 +7,7 @@ use super::shape::{lowest, moves, refined};
 use super::window::windows;
 use crate::gap::data::Record;
 use crate::gap::design::{Design, Group, PieceRows, Whole, link_pieces, piece_rows};
+use crate::gap::model::Fitted;
 use crate::gap::posterior::{Fit, Gains, Hypothesis, Member, Sizes, fitted, usual};
 
 /// Families that are fitted in full in each round.
@@ -16,6 +17,8 @@ const MOST: usize = 3;
 /// Steps of the sizes: of a first fit, and of a fit with an effect.
 const FIRST: usize = 10;
 const ROUNDS: usize = 6;
+/// Deviations by which a parameter may be beyond what is possible.
+pub(super) const BEYOND: f64 = 2.0;
 /// Sets whose shapes are refined in each round.
 const REFINED: usize = 4;
 
@@ -28,6 +31,16 @@ pub(in crate::gap) struct Candidate {
     pub pieces: Vec<PieceRows>,
     /// Prior cost \[nats\].
     pub cost: f64,
+}
+
+impl Candidate {
+    /// Whether another one has the same pieces.
+    fn is_same(&self, other: &Candidate) -> bool {
+        let mut pieces = self.pieces.iter().zip(&other.pieces);
+        self.effect.id == other.effect.id
+            && self.pieces.len() == other.pieces.len()
+            && pieces.all(|(a, b)| a.joint == b.joint && a.shape == b.shape)
+    }
 }
 
 /// A set of effects.
@@ -127,9 +140,7 @@ impl Search<'_> {
                 if brought(piece) {
                     continue;
                 }
-                let cost = self.design.tunables.joint_cost
-                    + (piece.choices.max(1) as f64).ln()
-                    + of_brought;
+                let cost = self.cost_of(piece) + of_brought;
                 let net = gain - cost;
                 match best.iter_mut().find(|(joint, ..)| *joint == piece.joint) {
                     Some(known) if net > known.1[0] => (known.1, known.2) = ([net, cost], piece),
@@ -255,7 +266,7 @@ impl Search<'_> {
     ) -> Option<Found> {
         let mut effects = found.effects.clone();
         let gone = effects[effect].pieces.remove(piece);
-        effects[effect].cost -= self.design.tunables.joint_cost + (gone.choices.max(1) as f64).ln();
+        effects[effect].cost -= self.cost_of(&gone);
         self.with(none, effects)
     }
 
@@ -264,7 +275,7 @@ impl Search<'_> {
     fn next(&self, none: &Found, found: &Found) -> Vec<Found> {
         let usual_sizes = usual(self.design);
         let plain = fitted(self.design, found.fit.hypothesis.clone(), usual_sizes, 0, true);
-        let mut lists: Vec<(Vec<PieceRows>, Vec<[f64; 2]>)> = Vec::new();
+        let mut wanted: Vec<Candidate> = Vec::new();
         for fit in std::iter::once(&found.fit).chain(plain.iter()) {
             let all = Gains::new(self.design, fit);
             let more: Vec<PieceRows> = self
@@ -274,23 +285,12 @@ impl Search<'_> {
                 .collect();
             let mut gains = all.of_all(&self.pieces, f64::INFINITY);
             gains.extend(all.of_all(&more, f64::INFINITY));
-            lists.push((self.pieces.iter().cloned().chain(more).collect(), gains));
-        }
-        let mut wanted: Vec<Candidate> = Vec::new();
-        for (pieces, gains) in &lists {
-            for (_, candidate) in
-                self.candidates(pieces, gains, &found.effects).into_iter().take(FULL)
-            {
-                let is_known = |of: &Candidate| {
-                    of.effect.id == candidate.effect.id
-                        && of.pieces.len() == candidate.pieces.len()
-                        && of
-                            .pieces
-                            .iter()
-                            .zip(&candidate.pieces)
-                            .all(|(a, b)| a.joint == b.joint && a.shape == b.shape)
-                };
-                if !wanted.iter().any(is_known) {
+            let pieces: Vec<PieceRows> = self.pieces.iter().cloned().chain(more).collect();
+            let best = self.candidates(&pieces, &gains, &found.effects).into_iter().take(FULL);
+            let best: Vec<Candidate> =
+                best.map(|(_, candidate)| self.shaped(&all, candidate)).collect();
+            for candidate in best {
+                if !wanted.iter().any(|of| of.is_same(&candidate)) {
                     wanted.push(candidate);
                 }
             }
@@ -300,7 +300,7 @@ impl Search<'_> {
             .filter_map(|candidate| {
                 let mut effects = found.effects.clone();
                 effects.push(candidate);
-                self.with(none, effects)
+                self.possible(none, self.with(none, effects)?)
             })
             .collect();
         all.sort_by(|a, b| b.score.total_cmp(&a.score));
@@ -311,6 +311,55 @@ impl Search<'_> {
         all
     }
 
+    /// A piece with the best shape beside a fit.
+    fn best_shape(&self, gains: &Gains<'_>, piece: &PieceRows) -> PieceRows {
+        let moves = moves(piece.effect, self.records, piece);
+        let reshape = |of: &PieceRows, shape: &[f64]| of.reshaped(self.design, self.records, shape);
+        refined(gains, piece, &moves, lowest(self.records), &reshape)
+    }
+
+    /// A candidate whose pieces that act by themselves, which explain nothing with a wrong shape, have
+    /// their best ones; those that explain nothing even so go.
+    fn shaped(&self, gains: &Gains<'_>, mut candidate: Candidate) -> Candidate {
+        let pieces = std::mem::take(&mut candidate.pieces);
+        for piece in pieces {
+            if !piece.is_fixed() {
+                candidate.pieces.push(piece);
+                continue;
+            }
+            let best = self.best_shape(gains, &piece);
+            if candidate.pieces.is_empty() || gains.of(&best, f64::INFINITY) > self.cost_of(&best) {
+                candidate.pieces.push(best);
+            } else {
+                candidate.cost -= self.cost_of(&piece);
+            }
+        }
+        candidate
+    }
+
+    /// The set without pieces of its last effect whose parameters cannot be; `None` where none is left.
+    fn possible(&self, none: &Found, of: Found) -> Option<Found> {
+        let mut effects = of.effects.clone();
+        let last = effects.last_mut()?;
+        let fitted = Fitted::of_fit(&of.fit);
+        let first = fitted.len() - last.pieces.len();
+        let is_possible = |k: usize| fitted[first + k].beyond_bounds() <= BEYOND;
+        let kept: Vec<usize> = (0..last.pieces.len()).filter(|k| is_possible(*k)).collect();
+        if kept.len() == last.pieces.len() {
+            return Some(of);
+        }
+        for (k, gone) in last.pieces.iter().enumerate() {
+            last.cost -= if kept.contains(&k) { 0.0 } else { self.cost_of(gone) };
+        }
+        last.pieces = kept.iter().map(|k| last.pieces[*k].clone()).collect();
+        if last.pieces.is_empty() { None } else { self.with(none, effects) }
+    }
+
+    /// Prior cost of a piece \[nats\].
+    fn cost_of(&self, piece: &PieceRows) -> f64 {
+        self.design.tunables.joint_cost + (piece.choices.max(1) as f64).ln()
+    }
+
     /// The same set with the best shapes of its last effect.
     fn refined(&self, none: &Found, found: &Found, of: Found) -> Found {
         let Some(last) = of.effects.last() else { return of };
@@ -318,13 +367,8 @@ impl Search<'_> {
             fitted(self.design, found.fit.hypothesis.clone(), without_forms(&of, found), 0, true);
         let Some(without) = without else { return of };
         let gains = Gains::new(self.design, &without);
-        let refine = |piece: &PieceRows| {
-            let moves = moves(piece.effect, self.records, piece);
-            let reshape =
-                |of: &PieceRows, shape: &[f64]| of.reshaped(self.design, self.records, shape);
-            refined(&gains, piece, &moves, lowest(self.records), &reshape)
-        };
-        let pieces: Vec<PieceRows> = last.pieces.iter().map(refine).collect();
+        let pieces: Vec<PieceRows> =
+            last.pieces.iter().map(|piece| self.best_shape(&gains, piece)).collect();
         if pieces.iter().zip(&last.pieces).all(|(a, b)| a.shape == b.shape) {
             return of;
         }

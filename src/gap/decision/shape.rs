@@ -65,7 +65,7 @@ pub(in crate::gap) fn lowest(records: &[Record<'_>]) -> f64 {
     LOWEST as f64 / lasts
 }
 
-/// The piece at the best shape that the moves reach.
+/// The piece at the best shape that the moves reach: low frequencies first, or all at once.
 #[must_use]
 pub(in crate::gap) fn refined(
     gains: &Gains<'_>,
@@ -77,40 +77,71 @@ pub(in crate::gap) fn refined(
     if moves.is_empty() {
         return piece.clone();
     }
-    // Tangents would make up for a shape that is off.
-    let gain_of = |of: &PieceRows, below: f64| gains.of(&of.without_tangents(), below);
-    let mut best = piece.clone();
-    let mut below = lowest;
-    for level in 0..LEVELS {
-        let mut most = gain_of(&best, below);
-        let shrink = 0.5_f64.powi(level);
-        for _ in 0..ROUNDS {
-            let mut improved = false;
-            for of in moves {
-                for sign in [-1.0, 1.0] {
-                    let mut shape = best.shape.clone();
-                    let x = &mut shape[of.coordinate];
-                    *x = if of.is_factor {
-                        *x * (1.0 + of.step * shrink).powf(sign)
-                    } else {
-                        *x + sign * of.step * shrink
-                    };
-                    let tried = reshape(&best, &shape);
-                    if tried.rows.is_empty() {
-                        continue;
-                    }
-                    let gain = gain_of(&tried, below);
-                    if gain > most + LEAST {
-                        (most, best, improved) = (gain, tried, true);
-                        break;
-                    }
+    let climb = Climb { gains, moves, reshape };
+    let both = [lowest, f64::INFINITY].map(|below| climb.from(piece, below));
+    let [a, b] = both.each_ref().map(|of| climb.gain(of, f64::INFINITY));
+    let [low, all] = both;
+    if a > b { low } else { all }
+}
+
+/// A pattern search.
+struct Climb<'a> {
+    gains: &'a Gains<'a>,
+    moves: &'a [Move],
+    reshape: &'a dyn Fn(&PieceRows, &[f64]) -> PieceRows,
+}
+
+impl Climb<'_> {
+    /// Tangents would make up for a shape that is off.
+    fn gain(&self, of: &PieceRows, below: f64) -> f64 {
+        self.gains.of(&of.without_tangents(), below)
+    }
+
+    /// The best shape near a piece; the first level has the frequencies `below` \[Hz\].
+    fn from(&self, piece: &PieceRows, mut below: f64) -> PieceRows {
+        let mut best = piece.clone();
+        for level in 0..LEVELS {
+            let mut most = self.gain(&best, below);
+            for _ in 0..ROUNDS {
+                let step = self.step(&best, below, most, 0.5_f64.powi(level));
+                let Some((gain, better)) = step else { break };
+                (most, best) = (gain, better);
+            }
+            below *= 2.0;
+        }
+        best
+    }
+
+    /// The piece after the moves that gain more than `most`, made smaller by `shrink`.
+    fn step(
+        &self,
+        piece: &PieceRows,
+        below: f64,
+        mut most: f64,
+        shrink: f64,
+    ) -> Option<(f64, PieceRows)> {
+        let mut best: Option<PieceRows> = None;
+        for of in self.moves {
+            for sign in [-1.0, 1.0] {
+                let from = best.as_ref().unwrap_or(piece);
+                let mut shape = from.shape.clone();
+                let x = &mut shape[of.coordinate];
+                *x = if of.is_factor {
+                    *x * (1.0 + of.step * shrink).powf(sign)
+                } else {
+                    *x + sign * of.step * shrink
+                };
+                let tried = (self.reshape)(from, &shape);
+                if tried.own == 0 || tried.rows.is_empty() {
+                    continue;
+                }
+                let gain = self.gain(&tried, below);
+                if gain > most + LEAST {
+                    (most, best) = (gain, Some(tried));
+                    break;
                 }
             }
-            if !improved {
-                break;
-            }
         }
-        below *= 2.0;
+        best.map(|best| (most, best))
     }
-    best
 }

@@ -1,7 +1,6 @@
 //! Everyday errors: what every robot has beside its model. They are nuisances, not findings.
 
 use super::basis::{Functions, Range, functions, rms, roughness};
-use super::joint::Set;
 use crate::arm::effects::{Motion, Response, Variable};
 use crate::gap::data::{Record, RecordKind};
 use crate::gap::tunables::Tunables;
@@ -144,13 +143,4 @@ fn of_logs(records: &[Record<'_>], joint: usize) -> Vec<Local> {
         }
     }
     all
-}
-
-/// The set to which a record belongs.
-pub(super) fn set_of(kind: RecordKind) -> Set {
-    match kind {
-        RecordKind::Mean => Set::Now,
-        RecordKind::Before => Set::Baseline,
-        RecordKind::Drift => Set::Drift,
-    }
 }

@@ -4,8 +4,9 @@ use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::everyday::{Group, everyday, set_of};
+use super::everyday::{Group, everyday};
 use super::parameters::Parameters;
+use super::set::{Set, set_of};
 use crate::gap::data::{Record, RecordKind};
 use crate::gap::tunables::Tunables;
 
@@ -13,17 +14,6 @@ use crate::gap::tunables::Tunables;
 const BAND: f64 = 2.0;
 /// Least variance of a row \[N²m²\].
 const LEAST: f64 = 1e-18;
-
-/// The set of logs of a cell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Set {
-    /// Logs of the robot as it is now.
-    Now,
-    /// Logs of the baseline.
-    Baseline,
-    /// How repetitions drift.
-    Drift,
-}
 
 /// Frequencies between which an error of the model has its own size \[Hz\]: one of three.
 const RANGES: [f64; 2] = [1.0, 4.0];

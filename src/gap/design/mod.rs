@@ -11,8 +11,10 @@ mod joint;
 mod parameters;
 mod piece;
 mod problem;
+mod set;
 
 pub(in crate::gap) use everyday::Group;
-pub(in crate::gap) use joint::{Cell, JointDesign, Set};
+pub(in crate::gap) use joint::{Cell, JointDesign};
 pub(in crate::gap) use piece::{Clock, PieceRows, Whole, link_pieces, piece_rows};
 pub(in crate::gap) use problem::Design;
+pub(in crate::gap) use set::Set;

@@ -5,8 +5,8 @@ use rayon::prelude::*;
 
 use super::basis::{Functions, fades, functions, rms};
 use super::column::{Column, Piece, columns_at, pieces};
-use super::joint::Set;
 use super::problem::Design;
+use super::set::Set;
 use crate::arm::dynamics::RIGID;
 use crate::arm::effects::{self, Effect, Form, Motion, Nature, Role, Scope};
 use crate::gap::data::{Record, RecordKind};
@@ -285,6 +285,12 @@ impl PieceRows {
             series.0.iter_mut().zip(series.1).for_each(|(x, law)| *x *= size * law);
         }
         all
+    }
+
+    /// Whether its shape acts by itself: it has no amplitude.
+    #[must_use]
+    pub(in crate::gap) fn is_fixed(&self) -> bool {
+        self.prior.iter().any(|(mean, _)| *mean != 0.0)
     }
 
     /// The piece at just its shape.

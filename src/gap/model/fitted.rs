@@ -5,6 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use super::body_near::body_near;
 use crate::arm::effects::{Effect, Role};
 use crate::gap::design::PieceRows;
+use crate::gap::posterior::Fit;
 
 /// Step over which parameters are differentiated, in deviations.
 const DIFFERENCE: f64 = 1e-3;
@@ -39,6 +40,21 @@ impl Fitted {
             coordinates = body;
         }
         with_deviations(piece.effect, piece.joint, &coordinates, &spread)
+    }
+
+    /// All pieces of a fit.
+    #[must_use]
+    pub(in crate::gap) fn of_fit(fit: &Fit) -> Vec<Fitted> {
+        let mut from = fit.mean.len() - fit.hypothesis.columns();
+        let mut all = Vec::new();
+        for member in &fit.hypothesis.members {
+            let own = member.piece.own;
+            let factors = fit.mean.rows(from, own).into_owned();
+            let covariance = fit.covariance.view((from, from), (own, own)).into_owned();
+            all.push(Fitted::new(&member.piece, &factors, &covariance));
+            from += member.piece.prior.len();
+        }
+        all
     }
 
     /// The parameter that is so many deviations beyond what can be, and by how many.

@@ -29,6 +29,10 @@ pub(in crate::gap) struct Fit {
     pub(super) extra: Vec<Extra>,
 }
 
+/// Gain of a step after which no further one is made \[nats\].
+const CONVERGED: f64 = 0.5;
+/// How many times more steps are made at most.
+const LONGER: usize = 4;
 /// Curvature that is added where a size hardly matters.
 const LEAST_CURVATURE: f64 = 0.3;
 
@@ -83,7 +87,13 @@ fn fit_from(
     };
     fit.start_forms(design);
     fit.reduce(design, |_| true)?;
-    for _ in 0..rounds {
+    // Sizes that are far off need more steps.
+    let mut before = f64::NEG_INFINITY;
+    for round in 0..LONGER * rounds {
+        if round >= rounds && fit.log_evidence - before < CONVERGED {
+            break;
+        }
+        before = fit.log_evidence;
         fit.step(design, touched_only)?;
     }
     Some(fit)
@@ -95,7 +105,7 @@ impl Fit {
         let mut sds = Vec::new();
         let mut means = Vec::new();
         for (member, amplitude) in self.hypothesis.members.iter().zip(&self.amplitudes) {
-            let is_fixed = member.piece.prior.iter().any(|(mean, _)| *mean != 0.0);
+            let is_fixed = member.piece.is_fixed();
             for (k, (mean, sd)) in member.piece.prior.iter().enumerate() {
                 means.push(*mean);
                 // A shape that acts by itself has no amplitude.

@@ -131,13 +131,14 @@ impl<'a> Gains<'a> {
         products.first().map_or(f64::NEG_INFINITY, |of| best(of, piece, spread))
     }
 
-    /// Gains of all pieces, and what the columns gain by themselves that each brings along.
+    /// Gains of all pieces, and what the columns gain by themselves that each brings along. What a
+    /// shape does by itself counts as far as it helps: the right shape may be between the tried ones.
     #[must_use]
     pub(in crate::gap) fn of_all(&self, pieces: &[PieceRows], below: f64) -> Vec<[f64; 2]> {
         let spread = self.design.tunables.amplitude_spread;
         let gains = |pieces: &[PieceRows]| -> Vec<[f64; 2]> {
             let of: Vec<&PieceRows> = pieces.iter().collect();
-            let both = |(of, piece)| [best(of, piece, spread), brought(of, piece)];
+            let both = |(of, piece)| [most(of, piece, spread), brought(of, piece)];
             self.products(&of, below).iter().zip(pieces).map(both).collect()
         };
         pieces.par_chunks(TOGETHER).flat_map_iter(gains).collect()
@@ -158,10 +159,19 @@ fn brought((a, b): &(DMatrix<f64>, DVector<f64>), piece: &PieceRows) -> f64 {
     gain(&a, &b, &piece.prior[piece.own..], 1.0).max(0.0)
 }
 
+/// The gain of a piece, of as much of it as helps where it acts by itself.
+fn most(products: &(DMatrix<f64>, DVector<f64>), piece: &PieceRows, spread: f64) -> f64 {
+    let (a, b) = products;
+    match piece.is_fixed() {
+        true if b[0] > 0.0 => 0.5 * b[0] * b[0] / a[(0, 0)].max(f64::MIN_POSITIVE),
+        true => f64::NEG_INFINITY,
+        false => best(products, piece, spread),
+    }
+}
+
 /// The gain of a piece over the amplitudes that are tried.
 fn best((a, b): &(DMatrix<f64>, DVector<f64>), piece: &PieceRows, spread: f64) -> f64 {
-    let is_fixed = piece.prior.iter().any(|(mean, _)| *mean != 0.0);
-    let tried: &[f64] = if is_fixed { &[1.0] } else { &TRIED };
+    let tried: &[f64] = if piece.is_fixed() { &[1.0] } else { &TRIED };
     let gain = |amplitude: &f64| {
         gain(a, b, &piece.prior, *amplitude) - 0.5 * (amplitude.ln() / spread).powi(2)
     };
