@@ -10,6 +10,7 @@ use super::grade::{JointGap, Shrink, budget, places, places_missed, shrink};
 use super::model::{Fitted, Improved};
 use super::phase::Phase;
 use super::posterior::{Hypothesis, Member, fitted_as_written};
+use super::sign::{Turned, is_opposite};
 use super::trust::Trust;
 use super::tunables::Tunables;
 use crate::arm::dynamics::Load;
@@ -82,19 +83,19 @@ fn robot_of(
     }
     let mut records = all(model, before);
     let design = with_loads(&mut records, settings);
-    let none = Search::none_of(&design)?;
-    let is_everyday =
-        |joint: usize| none.fit.everyday(&design, joint) < settings.tunables.usual_error;
-    if (0..model.dof).all(is_everyday) {
+    let refit = improved(model, (&design, &records), &[]);
+    let held = all(model, before);
+    let gaps = shrink(&held, [model, &refit.applied, &refit.applied]);
+    let is_everyday = |of: &JointGap| of.refit <= settings.tunables.usual_error * of.torque;
+    if gaps.joints.iter().all(is_everyday) {
         return None;
     }
+    let none = Search::none_of(&design)?;
     // Robots warm up differently each day.
     let effects = nameable(&records, settings).into_iter().filter(|of| of.acts != Acts::OverTime);
     let search = Search::new(&records, &design, &effects.collect::<Vec<_>>());
     let (none, found, tried) = search.best(none);
-    let refit = improved(model, (&design, &records), &[]);
-    let held = all(model, before);
-    let models = Models { nominal: model, believed: model, refit: &refit };
+    let models = Models { nominal: model, believed: model, refit: &refit, turned: None };
     let Graded { decision, best, .. } = graded(&search, [&none, &found], &tried, &held, &models);
     (!decision.effects.is_empty()).then_some((best, decision.effects))
 }
@@ -124,17 +125,29 @@ fn diagnose_telling(
     tell: &dyn Fn(Phase),
 ) -> Diagnosis {
     tell(Phase::Design);
-    let design = with_loads(&mut train, settings);
-    let effects = nameable(&train, settings);
+    let mut design = with_loads(&mut train, settings);
     tell(Phase::Search);
+    let turned = if is_opposite(&train) { turned(&train, &design, settings) } else { None };
+    if let Some(turned) = &turned {
+        turned.turn_back(&mut train);
+        design = with_loads(&mut train, settings);
+    }
+    let mut effects = nameable(&train, settings);
+    effects.retain(|effect| !effect.coordinates.is_empty());
     let search = Search::new(&train, &design, &effects);
     let Some(none) = Search::none_of(&design) else { return Diagnosis::failed(model, held) };
     let (none, found, tried) = search.best(none);
     tell(Phase::Decision);
-    let refit = improved(believed, (&design, &train), &[]);
-    let models = Models { nominal: model, believed, refit: &refit };
+    let plain = improved(believed, (&design, &train), &[]);
+    let refit = turned.as_ref().map_or_else(|| plain.clone(), |of| of.added_to(&plain));
+    let models = Models { nominal: model, believed, refit: &refit, turned: turned.as_ref() };
     let Graded { mut decision, mut best, shrink: mut graded } =
         graded(&search, [&none, &found], &tried, held, &models);
+    if let Some(finding) = turned.as_ref().and_then(Turned::finding) {
+        decision.add(finding);
+        graded = shrink(held, [model, &plain.applied, &best.applied]);
+    }
+    let refit = plain;
     tell(Phase::Grading);
     let mut reasons = Vec::new();
     if let Some(why) = refusal(&train, &graded, settings) {
@@ -179,6 +192,8 @@ struct Models<'a> {
     believed: &'a Model,
     /// With other parameters.
     refit: &'a Improved,
+    /// Torques that are turned round.
+    turned: Option<&'a Turned>,
 }
 
 /// A decision with the model that comes of it.
@@ -201,18 +216,15 @@ fn graded(
     let mut withdrawn = Vec::new();
     loop {
         let mut decision = decide(search, none, &found, tried);
-        let best = if decision.asserted.is_empty() {
-            models.refit.clone()
-        } else {
-            improved(models.believed, (search.design, search.records), &decision.asserted)
-        };
+        let best = models.with(search, &decision.asserted);
         let graded = shrink(held, [models.nominal, &models.refit.applied, &best.applied]);
         let mut idle: Vec<&'static str> = Vec::new();
         let is_written =
             |of: &&Finding| decision.asserted.iter().any(|a| a.effect.id == of.effect.id);
         for of in decision.effects.iter().chain(decision.candidates.iter().filter(is_written)) {
             let Some(limit) = left_at_most(of.effect, &search.design.tunables) else { continue };
-            let entry = Gate::HeldOut.of(of.effect.id.to_owned(), left(of, &graded), limit);
+            let value = left(of, &gaps_without(search, &decision, of.effect, held, models, &best));
+            let entry = Gate::HeldOut.of(of.effect.id.to_owned(), value, limit);
             if !entry.passed {
                 idle.push(of.effect.id);
                 if of.effect.nature != Nature::Parameters {
@@ -231,14 +243,40 @@ fn graded(
     }
 }
 
+/// The gaps with all effects but one, and with all.
+fn gaps_without(
+    search: &Search<'_>,
+    decision: &Decision,
+    effect: &Effect,
+    held: &[Record<'_>],
+    models: &Models<'_>,
+    best: &Improved,
+) -> Shrink {
+    let mut rest = decision.asserted.clone();
+    rest.retain(|of| of.effect.id != effect.id);
+    let without = models.with(search, &rest);
+    shrink(held, [models.nominal, &without.applied, &best.applied])
+}
+
+impl Models<'_> {
+    /// The model with some effects.
+    fn with(&self, search: &Search<'_>, effects: &[Candidate]) -> Improved {
+        if effects.is_empty() {
+            return self.refit.clone();
+        }
+        let best = improved(self.believed, (search.design, search.records), effects);
+        self.turned.map_or_else(|| best.clone(), |of| of.added_to(&best))
+    }
+}
+
 /// What an effect may leave of the gap in held-out data; `None` for one that need not be there, or that
 /// the refitted model has too.
 fn left_at_most(effect: &Effect, tunables: &Tunables) -> Option<f64> {
     match (effect.nature, effect.acts) {
         (Nature::Law, Acts::Always | Acts::AfterReversals) => Some(tunables.left_in_heldout),
         // Robots warm up differently each day; other links are no finding.
-        (Nature::Law, Acts::OverTime) | (Nature::Parameters, _) => Some(1.0),
-        (Nature::Law, Acts::InWindow) | (Nature::Parameter, _) => None,
+        (Nature::Law, Acts::OverTime) | (Nature::Parameter | Nature::Parameters, _) => Some(1.0),
+        (Nature::Law, Acts::InWindow) => None,
     }
 }
 
@@ -347,7 +385,22 @@ fn improved(
     Improved::new(model, &design.parameters.mixing, &parameters, &Fitted::of_fit(&fit))
 }
 
+/// Torques that are logged with the other sign.
+fn turned(train: &[Record<'_>], design: &Design, settings: &Settings) -> Option<Turned> {
+    let search = Search::new(train, design, &nameable(train, settings));
+    Turned::of(&search, Search::none_of(design)?)
+}
+
 impl Decision {
+    /// Adds what was found before.
+    fn add(&mut self, finding: Finding) {
+        self.effects.insert(0, finding);
+        self.verdict = match self.verdict {
+            Verdict::Unknown | Verdict::Partial => Verdict::Partial,
+            _ => Verdict::Effect,
+        };
+    }
+
     /// Takes back what was asserted.
     fn withdraw(&mut self, verdict: Verdict) {
         self.candidates.append(&mut self.effects);

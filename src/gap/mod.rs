@@ -15,6 +15,7 @@ mod motion;
 mod phase;
 mod posterior;
 mod power;
+mod sign;
 mod trust;
 mod tunables;
 

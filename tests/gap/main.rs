@@ -204,7 +204,7 @@ fn contacts_are_found_with_force_and_time_window() {
     let nominal = irb1600();
     let truth = perturbed(&nominal, 5);
     let contact = effect("contact").unwrap();
-    for rise in [0.0, 0.35] {
+    for rise in [0.35, 0.0] {
         let coordinates = [30.0, -40.0, 12.0, rise, 2.636, 3.792, 10.0];
         let robot = Robot { model: &truth, effects: &[(contact, 0, &coordinates)], noise: 5e-4 };
         let found = diagnosed(&nominal, &robot);
@@ -449,7 +449,9 @@ fn a_force_beside_friction_is_not_mistaken_for_a_brake() {
         (friction, 4, [1.0, 6.0, 8.0, 10.0].as_slice()),
     ];
     let found = diagnosed(&nominal, &Robot { model: &truth, effects: &effects, noise: 0.003 });
-    assert_eq!(named(&found), [("position_friction", vec![5]), ("contact", vec![])]);
+    let mut all = named(&found);
+    all.sort_unstable();
+    assert_eq!(all, [("contact", vec![]), ("position_friction", vec![5])]);
 }
 
 #[test]

@@ -11,9 +11,13 @@ use crate::gap::model::Fitted;
 use crate::gap::trust::Trust;
 
 /// Ids of effects that a class has at most: more are unknown.
-const LARGEST_CLASS: usize = 5;
+const LARGEST_CLASS: usize = 3;
+/// Joints that are named of an effect of the robot at most.
+const FEW: usize = 2;
 /// Standard deviations of what any robot has within which a parameter is no finding.
 const EVERYDAY: f64 = 3.0;
+/// The same of a change since the baseline, which has them, too.
+const CHANGED: f64 = 0.5;
 /// Correlation from which on a law takes back another one: it is a form of that.
 const TAKES_BACK: f64 = -0.5;
 
@@ -43,8 +47,8 @@ struct Weighed {
     size: f64,
     /// Evidence \[nats\].
     nats: f64,
-    /// The joint that an effect of the robot reaches, where it reaches no other.
-    only: Vec<usize>,
+    /// Joints that an effect of the robot reaches, where it reaches but few.
+    few: Vec<usize>,
     class: Vec<&'static str>,
     probability: f64,
 }
@@ -125,9 +129,9 @@ pub(in crate::gap) fn decide(
             if let Some(ratio) = confused {
                 there &= ask(Gate::Form, at.clone(), ratio, tunables.of_confused);
             }
-            // A baseline has what any robot has.
-            if let Some(value) = piece.fitted.over_everyday().filter(|_| !has_baseline) {
-                there &= ask(Gate::Everyday, at.clone(), value, EVERYDAY);
+            if let Some(value) = piece.fitted.over_everyday() {
+                let limit = if has_baseline { CHANGED } else { EVERYDAY };
+                there &= ask(Gate::Everyday, at.clone(), value, limit);
             }
             if of.pieces.len() > 1 {
                 there &= ask(Gate::JointEvidence, at, piece.nats, tunables.joint_nats);
@@ -185,7 +189,7 @@ impl Weighed {
         let joints: Vec<usize> = fitted.iter().filter_map(|of| of.joint).collect();
         Finding {
             effect: self.effect,
-            joints: if joints.is_empty() { self.only.clone() } else { joints },
+            joints: if joints.is_empty() { self.few.clone() } else { joints },
             class: self.class.clone(),
             probability: self.probability,
             parameters: parameters(fitted),
@@ -276,17 +280,15 @@ fn weigh(
         WeighedPiece { member: first + k, fitted, share: size, nats }
     });
     let piece = &found.effects[number].pieces[0];
-    // An effect of the robot that one joint alone has.
-    let only = match &piece.rows[..] {
-        [(joint, _)] if effect.scope == Scope::Robot => vec![*joint],
-        _ => Vec::new(),
-    };
+    let is_of_few = effect.scope == Scope::Robot && piece.rows.len() <= FEW;
+    let few =
+        if is_of_few { piece.rows.iter().map(|(joint, _)| *joint).collect() } else { Vec::new() };
     let class = class(search, found, number, tried);
     Weighed {
         effect,
         size: largest(first..first + count),
         nats: found.score - without,
-        only,
+        few,
         probability: calibrated(inclusion(effect.id, tried)),
         class,
         pieces: pieces.collect(),

@@ -1,5 +1,6 @@
 //! What a diagnosis can say: a verdict, effects, places.
 
+use super::calibration::asserted;
 use crate::arm::effects::Effect;
 
 /// What was found.
@@ -76,7 +77,7 @@ impl Finding {
             effect,
             joints,
             class: vec![effect.id],
-            probability: 1.0 / (1.0 + (-nats).exp()),
+            probability: asserted(nats),
             parameters: Vec::new(),
             nats,
             size: 1.0,

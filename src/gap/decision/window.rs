@@ -56,26 +56,29 @@ pub(in crate::gap) fn windows(
             }
         }
     }
-    let by_window: Vec<f64> =
-        gains.of_all(&pieces, LOWEST as f64 / lasts).iter().map(|of| of[0]).collect();
-    let mut order: Vec<usize> = (0..pieces.len()).collect();
-    order.sort_by(|a, b| by_window[*b].total_cmp(&by_window[*a]));
     let ends = |piece: &PieceRows| {
         let n = piece.shape.len();
         [piece.shape[n - 3], piece.shape[n - 2]]
     };
     let mut best: Vec<&PieceRows> = Vec::new();
-    for k in order {
-        if best.len() == STARTS || by_window[k] < LEAST + (choices as f64).ln() {
-            break;
-        }
-        let [a, b] = ends(&pieces[k]);
-        let is_apart = best.iter().all(|other| {
-            let [c, d] = ends(other);
-            b.min(d) - a.max(c) <= 0.5 * (b - a).min(d - c)
-        });
-        if is_apart {
-            best.push(&pieces[k]);
+    for below in [LOWEST as f64 / lasts, f64::INFINITY] {
+        let by_window: Vec<f64> = gains.of_all(&pieces, below).iter().map(|of| of[0]).collect();
+        let mut order: Vec<usize> = (0..pieces.len()).collect();
+        order.sort_by(|a, b| by_window[*b].total_cmp(&by_window[*a]));
+        let mut left = STARTS;
+        for k in order {
+            if left == 0 || by_window[k] < LEAST + (choices as f64).ln() {
+                break;
+            }
+            let [a, b] = ends(&pieces[k]);
+            let is_apart = best.iter().all(|other| {
+                let [c, d] = ends(other);
+                b.min(d) - a.max(c) <= 0.5 * (b - a).min(d - c)
+            });
+            if is_apart {
+                best.push(&pieces[k]);
+                left -= 1;
+            }
         }
     }
     best.into_iter()

@@ -132,7 +132,11 @@ fn with_deviations(
     coordinates: &[f64],
     spread: &DMatrix<f64>,
 ) -> Fitted {
-    let parameters = effect.parameters_of(coordinates);
+    let mut parameters = effect.parameters_of(coordinates);
+    // An effect that is there or not.
+    if coordinates.is_empty() {
+        parameters = effect.parameters.iter().map(|of| of.bounds[1]).collect();
+    }
     let mut jacobian = DMatrix::zeros(parameters.len(), coordinates.len());
     for column in 0..coordinates.len() {
         let mut next = coordinates.to_vec();
