@@ -58,7 +58,9 @@ struct WeighedPiece {
     /// Its number among all pieces.
     member: usize,
     fitted: Fitted,
-    /// Share of the joint's torque.
+    /// The joint that it changes most.
+    most: usize,
+    /// Share of that joint's torque.
     share: f64,
     /// Evidence \[nats\].
     nats: f64,
@@ -112,15 +114,13 @@ pub(in crate::gap) fn decide(
         for (k, piece) in of.pieces.iter().enumerate() {
             let joint = piece.fitted.joint;
             let at = joint.map_or(id.to_owned(), |joint| format!("{id} of joint {}", joint + 1));
-            let least = joint.map_or(least, |joint| {
-                let left = left(found, joint);
-                let over = if left > tunables.usual_error {
-                    tunables.over_unexplained
-                } else {
-                    tunables.over_everyday
-                };
-                least.max(over * left)
-            });
+            let left = left(found, joint.unwrap_or(piece.most));
+            let over = if left > tunables.usual_error {
+                tunables.over_unexplained
+            } else {
+                tunables.over_everyday
+            };
+            let least = least.max(over * left);
             let confused = beside_confused(search, found, &weighed, [number, k]);
             let is_quiet = joint.is_none_or(|joint| !noisy.contains(&joint));
             let mut there = is_quiet
@@ -269,15 +269,14 @@ fn weigh(
     let pieces = (0..count).map(|k| {
         let fitted = all[first + k].clone();
         let members = first + k..first + k + 1;
-        let size = match fitted.joint {
-            Some(joint) => share(members, joint),
-            None => largest(members),
-        };
+        let size = |joint: &usize| share(members.clone(), *joint);
+        let by_size = |a: &usize, b: &usize| size(a).total_cmp(&size(b));
+        let most = fitted.joint.or_else(|| (0..n).max_by(by_size)).unwrap_or(0);
         let nats = match count {
             1 => found.score - without,
             _ => found.score - score(search.without_joint(none, found, number, k)),
         };
-        WeighedPiece { member: first + k, fitted, share: size, nats }
+        WeighedPiece { member: first + k, fitted, most, share: size(&most), nats }
     });
     let piece = &found.effects[number].pieces[0];
     let is_of_few = effect.scope == Scope::Robot && piece.rows.len() <= FEW;

@@ -11,6 +11,9 @@ use crate::arm::dynamics::RIGID;
 use crate::arm::effects::{self, Effect, Form, Motion, Nature, Role, Scope};
 use crate::gap::data::{Record, RecordKind};
 
+/// Root mean square of functions of unit size that are seen at all.
+const SEEN: f64 = 1e-6;
+
 /// Rows of one effect at one joint, for one choice of its shape.
 #[derive(Clone)]
 pub struct PieceRows {
@@ -262,7 +265,10 @@ impl PieceRows {
         };
         let own = |joint: &usize| self.joint.is_none_or(|own| own == *joint);
         let joints = self.rows.iter().map(|(joint, _)| *joint).filter(own).map(of_joint);
-        joints.filter(|(_, rows)| rows.ncols() > 0).collect()
+        let is_there = |rows: &DMatrix<f64>| {
+            rows.norm() > SEEN * f64::sqrt((rows.nrows() * rows.ncols()) as f64)
+        };
+        joints.filter(|(_, rows)| is_there(rows)).collect()
     }
 
     /// A law of friction after each reversal, from which on it builds up: of the size that is usual of

@@ -94,7 +94,14 @@ fn fit_from(
             break;
         }
         before = fit.log_evidence;
-        fit.step(design, touched_only)?;
+        let known = (fit.sizes.clone(), fit.amplitudes.clone());
+        if fit.step(design, touched_only).is_none() {
+            // Sizes of which nothing can be computed.
+            (fit.sizes, fit.amplitudes) = known;
+            fit.reduced.clear();
+            fit.reduce(design, |_| true)?;
+            break;
+        }
     }
     Some(fit)
 }
@@ -123,7 +130,7 @@ impl Fit {
                 let Some((_, rows)) = member.piece.rows.iter().find(|(of, _)| of == joint) else {
                     continue;
                 };
-                let law = rows.column(0).norm() / form.norm().max(1e-300);
+                let law = rows.column(0).norm() / form.norm();
                 self.sizes[*joint].set_form(
                     number,
                     law / design.joints[*joint].torque,
@@ -262,7 +269,7 @@ impl Fit {
                 let Some((_, rows)) = member.piece.rows.iter().find(|(of, _)| of == joint) else {
                     continue;
                 };
-                let law = (rows.columns(0, own) * &factors).norm() / form.norm().max(1e-300);
+                let law = (rows.columns(0, own) * &factors).norm() / form.norm();
                 self.sizes[*joint].set_form(
                     number,
                     law / design.joints[*joint].torque,
