@@ -30,10 +30,10 @@ impl Trust {
     pub(super) fn spread(self) -> Spread {
         match self {
             Trust::Commissioned => {
-                Spread { mass: 0.01, com: 0.003, inertia: 0.03, friction: 0.05, offset: 0.005 }
+                Spread { mass: 0.01, com: 0.003, inertia: 0.03, friction: 0.05, offset: 0.002 }
             }
             Trust::Cad => {
-                Spread { mass: 0.1, com: 0.015, inertia: 0.2, friction: 0.25, offset: 0.01 }
+                Spread { mass: 0.1, com: 0.015, inertia: 0.2, friction: 0.25, offset: 0.002 }
             }
             Trust::Unknown => {
                 Spread { mass: 10.0, com: 1.0, inertia: 20.0, friction: 20.0, offset: 2.0 }
