@@ -173,7 +173,7 @@ fn check_paths(args: &DiagnoseArgs) -> anyhow::Result<()> {
 fn run_diagnosis(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> {
     check_paths(args)?;
     let model = effects::load(&args.robot)?;
-    ready(&model, Use::Predict)?;
+    ready(&model, Use::Diagnose)?;
     common::notes(args.quiet, model.assumed());
     let map = ColumnMap::parse(&args.map)?;
     if let Some(period) = args.period.filter(|p| !(p.is_finite() && *p > 0.0)) {
