@@ -4,7 +4,7 @@ use super::data::{Record, RecordKind};
 use super::decision::{
     Candidate, Decision, Finding, Found, Gate, Search, Tried, Verdict, decide, may_name_parameters,
 };
-use super::design::Design;
+use super::design::{Design, Parameters};
 use super::diagnosis::Diagnosis;
 use super::grade::{JointGap, Shrink, budget, places, places_missed, shrink};
 use super::model::{Fitted, Improved};
@@ -380,9 +380,9 @@ fn improved(
     let Some(fit) = fitted_as_written(design, hypothesis, STEPS) else {
         return Improved::same(model);
     };
-    let count = design.parameters.mixing.ncols();
-    let parameters = fit.mean.rows(0, count).into_owned();
-    Improved::new(model, &design.parameters.mixing, &parameters, &Fitted::of_fit(&fit))
+    let Parameters { mixing, sizes, .. } = &design.parameters;
+    let change = mixing * fit.mean.rows(0, mixing.ncols());
+    Improved::new(model, [&change, sizes], &Fitted::of_fit(&fit))
 }
 
 /// Torques that are logged with the other sign.

@@ -1,6 +1,6 @@
 //! Torques that are logged with the other sign.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 use super::data::{Record, RecordKind};
 use super::decision::{Finding, Found, Search};
@@ -51,7 +51,7 @@ impl Turned {
 
     /// A model that has it, too.
     pub(super) fn added_to(&self, model: &Improved) -> Improved {
-        Improved::new(&model.written, &DMatrix::zeros(0, 0), &DVector::zeros(0), &self.fitted)
+        Improved::new(&model.written, [&DVector::zeros(0), &DVector::zeros(0)], &self.fitted)
     }
 
     /// What is said of it.

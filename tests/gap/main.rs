@@ -392,8 +392,8 @@ fn friction_and_rotor_inertia_of_a_wrist_do_not_become_negative() {
         parameters: change,
         deviations: vec![0.1; 4],
     };
-    let none = DMatrix::zeros(0, 0);
-    let improved = Improved::new(&nominal, &none, &DVector::zeros(0), &[fitted]).applied;
+    let none = DVector::zeros(0);
+    let improved = Improved::new(&nominal, [&none, &none], &[fitted]).applied;
     assert!((improved.wrist.coupling - nominal.wrist.coupling + 0.4).abs() < 1e-12);
     assert_eq!([improved.friction.coulomb[5], improved.friction.viscous[5]], [0.0; 2]);
     assert!(improved.motors.unwrap().rotor_inertia[5].abs() < 1e-12);

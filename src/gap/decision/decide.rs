@@ -1,5 +1,7 @@
 //! From the most probable set of effects to what is asserted: a list of gates.
 
+use rayon::prelude::*;
+
 use super::calibration::calibrated;
 use super::finding::{Estimated, Finding, Remainder, Verdict};
 use super::search::{BEYOND, Candidate, Found, Search, Tried};
@@ -86,8 +88,10 @@ pub(in crate::gap) fn decide(
     let n = search.design.joints.len();
     let mut trail = Vec::new();
     let noisy = noisy_joints(search, &mut trail);
-    let weighed: Vec<Weighed> =
-        (0..found.effects.len()).map(|k| weigh(search, none, found, k, tried)).collect();
+    let weighed: Vec<Weighed> = (0..found.effects.len())
+        .into_par_iter()
+        .map(|k| weigh(search, none, found, k, tried))
+        .collect();
     let least = if has_baseline { tunables.least_change } else { tunables.least_share };
     let everyday: Vec<f64> = (0..n).map(|j| found.fit.everyday(search.design, j)).collect();
     let left = |fit: &Found, joint: usize| {
@@ -266,7 +270,7 @@ fn weigh(
     let largest = |members: std::ops::Range<usize>| {
         (0..n).map(|joint| share(members.clone(), joint)).fold(0.0, f64::max)
     };
-    let pieces = (0..count).map(|k| {
+    let pieces = (0..count).into_par_iter().map(|k| {
         let fitted = all[first + k].clone();
         let members = first + k..first + k + 1;
         let size = |joint: &usize| share(members.clone(), *joint);

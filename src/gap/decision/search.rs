@@ -4,9 +4,9 @@ use crate::arm::effects::{Acts, Effect, Nature, Scope, Subject};
 use rayon::prelude::*;
 
 use super::shape::{lowest, moves, refined};
-use super::window::windows;
+use super::window::Windows;
 use crate::gap::data::Record;
-use crate::gap::design::{Design, Group, PieceRows, Whole, link_pieces, piece_rows};
+use crate::gap::design::{Design, Group, PieceRows, link_pieces, piece_rows};
 use crate::gap::model::Fitted;
 use crate::gap::posterior::{Fit, Gains, Hypothesis, Member, Sizes, fitted, usual};
 
@@ -77,7 +77,7 @@ pub(in crate::gap) struct Search<'a> {
     /// Pieces that may be found.
     pieces: Vec<PieceRows>,
     /// Effects that act in windows.
-    whole: Vec<Whole>,
+    windows: Vec<Windows>,
 }
 
 impl<'a> Search<'a> {
@@ -94,11 +94,11 @@ impl<'a> Search<'a> {
             .find(|of| of.nature == Nature::Parameters && of.subject == Subject::Body);
         pieces.extend(parameters.into_iter().flat_map(|of| link_pieces(design, of)));
         let n = design.joints.len();
-        let whole = effects.iter().filter(|of| of.acts == Acts::InWindow).flat_map(|of| {
+        let windows = effects.iter().filter(|of| of.acts == Acts::InWindow).flat_map(|of| {
             let count = if of.scope == Scope::Robot { 1 } else { n };
-            (0..count).filter_map(|joint| Whole::new(records, of, joint))
+            (0..count).filter_map(|joint| Windows::new(design, records, of, joint))
         });
-        Search { records, design, pieces, whole: whole.collect() }
+        Search { records, design, pieces, windows: windows.collect() }
     }
 }
 
@@ -279,16 +279,17 @@ impl Search<'_> {
         for fit in std::iter::once(&found.fit).chain(plain.iter()) {
             let all = Gains::new(self.design, fit);
             let more: Vec<PieceRows> = self
-                .whole
+                .windows
                 .par_iter()
-                .flat_map_iter(|whole| windows(self.records, self.design, &all, whole))
+                .flat_map_iter(|of| of.best(self.records, self.design, &all))
                 .collect();
             let mut gains = all.of_all(&self.pieces, f64::INFINITY);
             gains.extend(all.of_all(&more, f64::INFINITY));
             let pieces: Vec<PieceRows> = self.pieces.iter().cloned().chain(more).collect();
-            let best = self.candidates(&pieces, &gains, &found.effects).into_iter().take(FULL);
+            let mut best = self.candidates(&pieces, &gains, &found.effects);
+            best.truncate(FULL);
             let best: Vec<Candidate> =
-                best.map(|(_, candidate)| self.shaped(&all, candidate)).collect();
+                best.into_par_iter().map(|(_, candidate)| self.shaped(&all, candidate)).collect();
             for candidate in best {
                 if !wanted.iter().any(|of| of.is_same(&candidate)) {
                     wanted.push(candidate);
@@ -296,7 +297,7 @@ impl Search<'_> {
             }
         }
         let mut all: Vec<Found> = wanted
-            .into_iter()
+            .into_par_iter()
             .filter_map(|candidate| {
                 let mut effects = found.effects.clone();
                 effects.push(candidate);
@@ -304,9 +305,10 @@ impl Search<'_> {
             })
             .collect();
         all.sort_by(|a, b| b.score.total_cmp(&a.score));
+
         let rest = all.split_off(all.len().min(REFINED));
         let mut all: Vec<Found> =
-            all.into_iter().map(|of| self.refined(none, found, of)).chain(rest).collect();
+            all.into_par_iter().map(|of| self.refined(none, found, of)).chain(rest).collect();
         all.sort_by(|a, b| b.score.total_cmp(&a.score));
         all
     }
@@ -314,8 +316,14 @@ impl Search<'_> {
     /// A piece with the best shape beside a fit.
     fn best_shape(&self, gains: &Gains<'_>, piece: &PieceRows) -> PieceRows {
         let moves = moves(piece.effect, self.records, piece);
-        let reshape = |of: &PieceRows, shape: &[f64]| of.reshaped(self.design, self.records, shape);
-        refined(gains, piece, &moves, lowest(self.records), &reshape)
+        let (design, records) = (self.design, self.records);
+        let reshape = |of: &PieceRows, shape: &[f64]| of.reshaped(design, records, shape, false);
+        let best = refined(gains, piece, &moves, lowest(records), &reshape);
+        if best.shape == piece.shape {
+            piece.clone()
+        } else {
+            piece.reshaped(design, records, &best.shape, true)
+        }
     }
 
     /// A candidate whose pieces that act by themselves, which explain nothing with a wrong shape, have

@@ -65,7 +65,8 @@ pub(in crate::gap) fn lowest(records: &[Record<'_>]) -> f64 {
     LOWEST as f64 / lasts
 }
 
-/// The piece at the best shape that the moves reach: low frequencies first, or all at once.
+/// The piece at the best shape that the moves reach: low frequencies first, or all at once. Tangents
+/// would make up for a shape that is off: `reshape` makes pieces without them.
 #[must_use]
 pub(in crate::gap) fn refined(
     gains: &Gains<'_>,
@@ -77,11 +78,23 @@ pub(in crate::gap) fn refined(
     if moves.is_empty() {
         return piece.clone();
     }
-    let climb = Climb { gains, moves, reshape };
-    let both = [lowest, f64::INFINITY].map(|below| climb.from(piece, below));
-    let [a, b] = both.each_ref().map(|of| climb.gain(of, f64::INFINITY));
+    let start = reshape(piece, &piece.shape);
+    let both = [lowest, f64::INFINITY].map(|below| climbed(gains, &start, moves, below, reshape));
+    let [a, b] = both.each_ref().map(|of| gains.of(of, f64::INFINITY));
     let [low, all] = both;
     if a > b { low } else { all }
+}
+
+/// The best shape near a piece; the first level has the frequencies `below` \[Hz\].
+#[must_use]
+pub(in crate::gap) fn climbed(
+    gains: &Gains<'_>,
+    piece: &PieceRows,
+    moves: &[Move],
+    below: f64,
+    reshape: &dyn Fn(&PieceRows, &[f64]) -> PieceRows,
+) -> PieceRows {
+    Climb { gains, moves, reshape }.from(piece, below)
 }
 
 /// A pattern search.
@@ -92,16 +105,11 @@ struct Climb<'a> {
 }
 
 impl Climb<'_> {
-    /// Tangents would make up for a shape that is off.
-    fn gain(&self, of: &PieceRows, below: f64) -> f64 {
-        self.gains.of(&of.without_tangents(), below)
-    }
-
     /// The best shape near a piece; the first level has the frequencies `below` \[Hz\].
     fn from(&self, piece: &PieceRows, mut below: f64) -> PieceRows {
         let mut best = piece.clone();
         for level in 0..LEVELS {
-            let mut most = self.gain(&best, below);
+            let mut most = self.gains.of(&best, below);
             for _ in 0..ROUNDS {
                 let step = self.step(&best, below, most, 0.5_f64.powi(level));
                 let Some((gain, better)) = step else { break };
@@ -135,7 +143,7 @@ impl Climb<'_> {
                 if tried.own == 0 || tried.rows.is_empty() {
                     continue;
                 }
-                let gain = self.gain(&tried, below);
+                let gain = self.gains.of(&tried, below);
                 if gain > most + LEAST {
                     (most, best) = (gain, Some(tried));
                     break;

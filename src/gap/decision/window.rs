@@ -1,99 +1,115 @@
 //! Effects that act for a part of each repetition, or of a log.
 //!
-//! Where windows begin and end is looked for at low frequencies first: they see no single row.
+//! What acts in a window is the sum of what acts in its parts. Where windows begin and end is looked for
+//! at low frequencies, too: they see no single row.
 
-use super::shape::{Move, lowest, refined};
+use super::shape::{Move, climbed, lowest};
+use crate::arm::effects::Effect;
 use crate::gap::data::Record;
-use crate::gap::design::{Clock, Design, PieceRows, Whole};
+use crate::gap::design::{Clock, Design, PieceRows, Times, Whole};
 use crate::gap::posterior::Gains;
 
 /// Parts of a repetition at which windows begin and end, and their lengths in parts.
 const PARTS: usize = 20;
 const LENGTHS: [usize; 5] = [1, 2, 3, 5, 8];
-/// Frequencies that are looked at first, in bins.
-const LOWEST: usize = 24;
 /// Windows from which the best one is looked for.
 const STARTS: usize = 2;
 /// Least gain of a window that is looked at further \[nats\].
 const LEAST: f64 = 4.0;
 
-/// The best windows of an effect at a joint beside a fit.
-#[must_use]
-pub(in crate::gap) fn windows(
-    records: &[Record<'_>],
-    design: &Design,
-    gains: &Gains<'_>,
-    whole: &Whole,
-) -> Vec<PieceRows> {
-    let Some(first) = records.first() else { return Vec::new() };
-    let lasts = first.motion.step() * first.motion.rows() as f64;
-    let part = lasts / PARTS as f64;
-    let period = if first.motion.closed { lasts } else { 0.0 };
-    let choices = PARTS * LENGTHS.len();
-    let mut pieces = Vec::new();
-    let begins = |record: &Record<'_>| record.times.first().map_or(0.0, |(begins, _)| *begins);
-    // Both clocks are the same where all logs begin at the same part of the period.
-    let phase = |record: &Record<'_>| {
-        let begins = begins(record);
-        if period > 0.0 { begins.rem_euclid(period) } else { begins }
-    };
-    let first_phase = phase(first);
-    let are_same = records.iter().all(|record| (phase(record) - first_phase).abs() < 0.1 * part);
-    let clocks: &[Clock] = if are_same && first_phase < 0.1 * part {
-        &[Clock::Absolute]
-    } else {
-        &[Clock::Absolute, Clock::Log]
-    };
-    let choices = choices * clocks.len();
-    for clock in clocks {
-        for length in LENGTHS {
-            for begin in 0..PARTS {
-                if period == 0.0 && begin + length > PARTS {
-                    continue;
-                }
-                let window = [part * begin as f64, part * (begin + length) as f64];
-                pieces.push(whole.within(design, records, window, period, *clock, choices));
+/// An effect that acts in windows, at a joint.
+pub(super) struct Windows {
+    whole: Whole,
+    /// Duration of a part \[s\].
+    part: f64,
+    /// By clock, what acts in each part.
+    parts: Vec<(Times, PieceRows)>,
+}
+
+impl Windows {
+    /// Windows of an effect.
+    pub(super) fn new(
+        design: &Design,
+        records: &[Record<'_>],
+        effect: &'static Effect,
+        joint: usize,
+    ) -> Option<Windows> {
+        let first = records.first()?;
+        let whole = Whole::new(records, effect, joint)?;
+        let part = first.duration() / PARTS as f64;
+        let period = if first.motion.closed { first.duration() } else { 0.0 };
+        // Both clocks are the same where all logs begin at the same part of the period.
+        let phase = |record: &Record<'_>| {
+            let begins = record.times.first().map_or(0.0, |(begins, _)| *begins);
+            if period > 0.0 { begins.rem_euclid(period) } else { begins }
+        };
+        let begins = phase(first);
+        let is_same = |record: &Record<'_>| (phase(record) - begins).abs() < 0.1 * part;
+        let clocks: &[Clock] = if records.iter().all(is_same) && begins < 0.1 * part {
+            &[Clock::Absolute]
+        } else {
+            &[Clock::Absolute, Clock::Log]
+        };
+        let choices = PARTS * LENGTHS.len() * clocks.len();
+        let of_clock = |clock: &Clock| {
+            let times = Times { period, clock: *clock, choices };
+            (times, whole.parts(design, records, (part, PARTS), &times))
+        };
+        let parts = clocks.iter().map(of_clock).collect();
+        Some(Windows { whole, part, parts })
+    }
+
+    /// The best windows beside a fit.
+    pub(super) fn best(
+        &self,
+        records: &[Record<'_>],
+        design: &Design,
+        gains: &Gains<'_>,
+    ) -> Vec<PieceRows> {
+        let limits = [lowest(records), f64::INFINITY];
+        let mut best: Vec<PieceRows> = Vec::new();
+        for below in limits {
+            for (times, [start, end]) in self.starts(gains, below) {
+                let within = |[start, end]: [f64; 2]| {
+                    self.whole.within(design, records, [start, end.max(start)], &times)
+                };
+                let piece = within([start, end]);
+                let n = piece.shape.len();
+                let step = 0.5 * self.part;
+                let moves = [n - 3, n - 2].map(|k| Move { coordinate: k, step, is_factor: false });
+                let reshape = |_: &PieceRows, shape: &[f64]| within([shape[n - 3], shape[n - 2]]);
+                best.push(climbed(gains, &piece, &moves, below, &reshape));
             }
         }
+        best
     }
-    let ends = |piece: &PieceRows| {
-        let n = piece.shape.len();
-        [piece.shape[n - 3], piece.shape[n - 2]]
-    };
-    let mut best: Vec<&PieceRows> = Vec::new();
-    for below in [LOWEST as f64 / lasts, f64::INFINITY] {
-        let by_window: Vec<f64> = gains.of_all(&pieces, below).iter().map(|of| of[0]).collect();
-        let mut order: Vec<usize> = (0..pieces.len()).collect();
-        order.sort_by(|a, b| by_window[*b].total_cmp(&by_window[*a]));
-        let mut left = STARTS;
-        for k in order {
-            if left == 0 || by_window[k] < LEAST + (choices as f64).ln() {
+
+    /// Windows that begin and end with parts and explain most, apart from each other.
+    fn starts(&self, gains: &Gains<'_>, below: f64) -> Vec<(Times, [f64; 2])> {
+        let mut all: Vec<(f64, Times, [usize; 2])> = Vec::new();
+        for (times, parts) in &self.parts {
+            let windows: Vec<[usize; 2]> = LENGTHS
+                .iter()
+                .flat_map(|length| (0..PARTS).map(move |begin| [begin, begin + length]))
+                .filter(|[_, end]| times.period > 0.0 || *end <= PARTS)
+                .collect();
+            let of_windows = gains.of_sums(parts, PARTS, &windows, below);
+            all.extend(of_windows.into_iter().zip(windows).map(|(gain, of)| (gain, *times, of)));
+        }
+        all.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut best: Vec<(Times, [usize; 2])> = Vec::new();
+        for (gain, times, [a, b]) in all {
+            if best.len() == STARTS || gain < LEAST + (times.choices as f64).ln() {
                 break;
             }
-            let [a, b] = ends(&pieces[k]);
-            let is_apart = best.iter().all(|other| {
-                let [c, d] = ends(other);
-                b.min(d) - a.max(c) <= 0.5 * (b - a).min(d - c)
-            });
-            if is_apart {
-                best.push(&pieces[k]);
-                left -= 1;
+            let is_apart = |(_, [c, d]): &(Times, [usize; 2])| {
+                2 * b.min(*d).saturating_sub(a.max(*c)) <= (b - a).min(d - c)
+            };
+            if best.iter().all(is_apart) {
+                best.push((times, [a, b]));
             }
         }
+        let of = |k: usize| self.part * k as f64;
+        best.into_iter().map(|(times, window)| (times, window.map(of))).collect()
     }
-    best.into_iter()
-        .map(|piece| {
-            let n = piece.shape.len();
-            let moves = [n - 3, n - 2].map(|coordinate| Move {
-                coordinate,
-                step: 0.5 * part,
-                is_factor: false,
-            });
-            let reshape = |of: &PieceRows, shape: &[f64]| {
-                let window = [shape[n - 3], shape[n - 2].max(shape[n - 3])];
-                whole.within(design, records, window, period, of.clock, choices)
-            };
-            refined(gains, piece, &moves, lowest(records), &reshape)
-        })
-        .collect()
 }

@@ -1,6 +1,6 @@
 //! What may explain a difference: columns of torques, in pieces that belong together.
 
-use crate::arm::effects::{Acts, Effect, Role, Scope};
+use crate::arm::effects::{Acts, Coordinate, Effect, Role, Scope};
 
 use crate::gap::data::{Record, RecordKind};
 
@@ -95,7 +95,7 @@ pub(super) fn pieces(effect: &'static Effect, records: &[Record<'_>], joint: usi
     };
     let piece = |shape: Vec<f64>| Piece {
         joint: of,
-        columns: columns(effect, records, joint, &shape, &tried),
+        columns: columns(effect, records, joint, &shape, Some(&tried)),
         choices: 0,
         shape,
     };
@@ -108,13 +108,17 @@ pub(super) fn pieces(effect: &'static Effect, records: &[Record<'_>], joint: usi
     pieces
 }
 
-/// Columns of an effect at a shape of its own.
+/// Columns of an effect at a shape of its own, with how they change with the shape or without.
 pub(super) fn columns_at(
     effect: &'static Effect,
     records: &[Record<'_>],
     joint: usize,
     shape: &[f64],
+    with_tangents: bool,
 ) -> Vec<Column> {
+    if !with_tangents {
+        return columns(effect, records, joint, shape, None);
+    }
     let scale = records.first().map(|record| record.motion.scale(joint));
     let tried: Vec<Vec<f64>> = effect
         .coordinates
@@ -124,17 +128,17 @@ pub(super) fn columns_at(
             _ => Vec::new(),
         })
         .collect();
-    columns(effect, records, joint, shape, &tried)
+    columns(effect, records, joint, shape, Some(&tried))
 }
 
 /// Columns at one shape: what it does by itself, where it does, then what each linear coordinate
-/// adds; behind each of these how it changes with the shape.
+/// adds; behind each of these how it changes with the shape, in steps of the `tried` values.
 fn columns(
     effect: &'static Effect,
     records: &[Record<'_>],
     joint: usize,
     shape: &[f64],
-    tried: &[Vec<f64>],
+    tried: Option<&[Vec<f64>]>,
 ) -> Vec<Column> {
     let with = |values: &[f64]| -> Vec<Reached> {
         records.iter().map(|record| added(effect, record, joint, values)).collect()
@@ -144,37 +148,34 @@ fn columns(
         let value = |k: usize| if is_linear(&k) && Some(k) != kept { 0.0 } else { shape[k] };
         (0..shape.len()).map(value).collect()
     };
-    // What the shape does by itself, and how each torque changes with it.
-    let block = |kept: Option<usize>, less: Option<&[Reached]>| -> Vec<Column> {
-        let relative = |values: &[f64]| match less {
-            Some(less) => difference(&with(values), less, 1.0),
-            None => with(values),
-        };
-        let base = only(kept, shape);
-        let here = relative(&base);
-        let tangents = effect.coordinates.iter().enumerate().filter_map(|(k, coordinate)| {
+    // Of all, not of what is more than the shape's own: that has its own tangent.
+    let tangents = |base: &[f64], from: &[Reached]| -> Vec<Column> {
+        let Some(tried) = tried else { return Vec::new() };
+        let tangent = |(k, coordinate): (usize, &Coordinate)| {
             let Role::Shape(_) = coordinate.role else { return None };
-            let mut next = base.clone();
+            let mut next = base.to_vec();
             let step = STEP * next[k].abs().max(1e-12);
             next[k] += step;
-            let spacing = nearest_spacing(&tried[k], shape[k]);
-            // Of all, not of what is more than the shape's own: that has its own tangent.
-            let from = if kept.is_some() { with(&base) } else { here.clone() };
-            let series = difference(&with(&next), &from, 1.0 / step);
-            Some(Column { series, mean: 0.0, sd: TANGENT * spacing })
-        });
-        let tangents: Vec<Column> = tangents.collect();
-        let (mean, sd) = if kept.is_some() { (0.0, 1.0) } else { (1.0, 0.0) };
-        std::iter::once(Column { series: here, mean, sd }).chain(tangents).collect()
+            let series = difference(&with(&next), from, 1.0 / step);
+            let sd = TANGENT * nearest_spacing(&tried[k], shape[k]);
+            Some(Column { series, mean: 0.0, sd })
+        };
+        effect.coordinates.iter().enumerate().filter_map(tangent).collect()
     };
     let mut columns = Vec::new();
-    let alone = with(&only(None, shape));
+    let base = only(None, shape);
+    let alone = with(&base);
     let acts = alone.iter().flatten().any(|(_, series)| series.iter().any(|x| *x != 0.0));
     if acts {
-        columns.extend(block(None, None));
+        columns.push(Column { series: alone.clone(), mean: 1.0, sd: 0.0 });
+        columns.extend(tangents(&base, &alone));
     }
     for k in (0..shape.len()).filter(is_linear) {
-        columns.extend(block(Some(k), acts.then_some(&alone[..])));
+        let base = only(Some(k), shape);
+        let all = with(&base);
+        let series = if acts { difference(&all, &alone, 1.0) } else { all.clone() };
+        columns.push(Column { series, mean: 0.0, sd: 1.0 });
+        columns.extend(tangents(&base, &all));
     }
     columns
 }

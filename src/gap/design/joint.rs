@@ -5,6 +5,7 @@ use std::ops::Range;
 use nalgebra::{DMatrix, DVector};
 
 use super::everyday::{Group, everyday};
+use super::packed::Packed;
 use super::parameters::Parameters;
 use super::set::{Set, set_of};
 use crate::gap::data::{Record, RecordKind};
@@ -67,7 +68,7 @@ pub struct JointDesign {
     /// Groups of the everyday errors.
     pub groups: Vec<Group>,
     /// Products of `[y, base]` of each cell.
-    pub grams: Vec<DMatrix<f64>>,
+    pub(in crate::gap) grams: Vec<Packed>,
 }
 
 impl JointDesign {
@@ -151,13 +152,13 @@ impl JointDesign {
         below.last().map_or(0, |cell| cell.rows.end)
     }
 
-    fn gram(&self, cell: &Cell) -> DMatrix<f64> {
+    fn gram(&self, cell: &Cell) -> Packed {
         let (from, count) = (cell.rows.start, cell.rows.len());
         let mut all = DMatrix::zeros(count, 1 + self.base.ncols());
         all.column_mut(0).copy_from(&self.y.rows(from, count));
         all.columns_mut(1, self.base.ncols()).copy_from(&self.base.rows(from, count));
         // Faster than `tr_mul`, which has no blocked product.
-        all.transpose() * &all
+        Packed::of(&(all.transpose() * &all))
     }
 }
 

@@ -8,6 +8,7 @@ mod basis;
 mod column;
 mod everyday;
 mod joint;
+mod packed;
 mod parameters;
 mod piece;
 mod problem;
@@ -15,6 +16,8 @@ mod set;
 
 pub(in crate::gap) use everyday::Group;
 pub(in crate::gap) use joint::{Cell, JointDesign};
-pub(in crate::gap) use piece::{Clock, PieceRows, Whole, link_pieces, piece_rows};
+pub(in crate::gap) use packed::Packed;
+pub(in crate::gap) use parameters::Parameters;
+pub(in crate::gap) use piece::{Clock, PieceRows, Times, Whole, link_pieces, piece_rows};
 pub(in crate::gap) use problem::Design;
 pub(in crate::gap) use set::Set;

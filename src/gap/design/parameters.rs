@@ -1,6 +1,7 @@
 //! Parameters of the model, which may be off by what the model is trusted.
 
-use nalgebra::{DMatrix, Matrix3, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+use rayon::prelude::*;
 
 use crate::arm::dynamics::{JOINT, RIGID, Regressor, link_parameters, parameter_count, write_rows};
 use crate::arm::effects::{Motion, Response};
@@ -8,71 +9,80 @@ use crate::arm::robot::Link;
 use crate::gap::data::{Record, RecordKind};
 use crate::gap::tunables::Tunables;
 
+use super::basis::rms;
 use crate::gap::trust::{Spread, Trust};
 
 /// Displacement of a centre of mass over which differences are taken \[m\].
 const SMALL: f64 = 1e-6;
-/// Names of the parameters of a link and of a joint.
-const LINK: [&str; RIGID] = [
-    "mass",
-    "com_x",
-    "com_y",
-    "com_z",
-    "inertia_xx",
-    "inertia_yy",
-    "inertia_zz",
-    "inertia_xy",
-    "inertia_xz",
-    "inertia_yz",
-];
-const OF_JOINT: [&str; JOINT] = ["rotor_inertia", "viscous", "coulomb", "offset"];
-/// Names of the parameters of the torque path.
-const OF_PATH: [&str; 2] = ["lag of the torques", "form of the lag"];
+/// Errors of a joint's torque, of its root mean square, that nothing sees.
+const UNSEEN: f64 = 1e-3;
+/// Sum of squares, in such errors, below which a direction of the parameters changes nothing.
+const NOTHING: f64 = 1e-2;
 
 /// Torques by joint that a parameter reaches \[Nm\].
 type Reached = Vec<(usize, Vec<f64>)>;
+/// Torques of a joint \[Nm\]: rows in time, columns of parameters.
+type Series = DMatrix<f64>;
 
-/// What one standard deviation of each parameter changes.
+/// The parameters of the model, and those of the torque path behind them: directions that the motions
+/// show, each with a deviation of 1.
 pub struct Parameters {
-    /// Names, such as `link 3 mass`.
-    pub names: Vec<String>,
-    /// Standard deviations, in the units of the parameters.
-    pub deviations: Vec<f64>,
-    /// Changes of the standard parameters for one deviation of each: square; parameters of the
-    /// torque path have none.
+    /// Changes of the standard parameters by direction; the torque path has none.
     pub mixing: DMatrix<f64>,
-    /// By record, by parameter.
+    /// Standard deviations of the standard parameters.
+    pub sizes: DVector<f64>,
+    /// The directions in deviations of single parameters.
+    directions: DMatrix<f64>,
+    /// By record, by direction.
     series: Vec<Vec<Reached>>,
 }
 
 impl Parameters {
     pub(super) fn new(records: &[Record<'_>], trust: Trust, tunables: &Tunables) -> Parameters {
-        let mut all = prior(records, &trust.spread(), tunables);
+        let mixing = prior(records, &trust.spread(), tunables);
         let path = [tunables.lag, tunables.lag_form];
-        all.names.extend(OF_PATH.map(ToOwned::to_owned));
-        all.deviations.extend(path);
-        for record in records {
-            let series = match record.kind {
-                RecordKind::Mean | RecordKind::Before => {
-                    let mut series = of_model(&record.motion, &all.mixing);
-                    series.extend(of_path(&record.motion, path));
-                    series
-                }
-                // No parameter changes from repetition to repetition.
-                RecordKind::Drift => vec![Vec::new(); all.names.len()],
-            };
-            all.series.push(series);
+        let known = |record: &&Record<'_>| record.kind != RecordKind::Drift;
+        let of_model: Vec<Vec<Series>> = records
+            .par_iter()
+            .map(|record| known(&record).then(|| of_model(&record.motion, &mixing)))
+            .map(Option::unwrap_or_default)
+            .collect();
+        let directions = shown(&of_model, records, mixing.ncols());
+        let of_record = |(record, series): (&Record<'_>, &Vec<Series>)| {
+            // No parameter changes from repetition to repetition.
+            if record.kind == RecordKind::Drift {
+                return vec![Vec::new(); directions.ncols() + path.len()];
+            }
+            let mut all = along(series, &directions);
+            all.extend(of_path(&record.motion, path));
+            all
+        };
+        Parameters {
+            series: records.par_iter().zip(&of_model).map(of_record).collect(),
+            sizes: DVector::from_fn(mixing.nrows(), |row, _| mixing.row(row).norm()),
+            mixing: mixing * &directions,
+            directions,
         }
-        all
     }
 
-    /// Number of parameters.
+    /// Number of directions, those of the torque path among them.
     #[must_use]
     pub fn count(&self) -> usize {
-        self.names.len()
+        self.of_model() + 2
     }
 
-    /// The series of a parameter at a joint by record; empty where it does not reach the joint.
+    /// Number of directions of the model's parameters.
+    #[must_use]
+    pub fn of_model(&self) -> usize {
+        self.mixing.ncols()
+    }
+
+    /// The parameters of a link in directions: a row for each.
+    pub(super) fn of_link(&self, link: usize) -> DMatrix<f64> {
+        self.directions.rows(RIGID * link, RIGID).into_owned()
+    }
+
+    /// The series of a direction at a joint by record; empty where it does not reach the joint.
     pub(super) fn series(&self, joint: usize, k: usize) -> Vec<&[f64]> {
         let mut all = Vec::with_capacity(self.series.len());
         for record in &self.series {
@@ -83,26 +93,18 @@ impl Parameters {
     }
 }
 
-/// Names and deviations of the model's parameters.
-fn prior(records: &[Record<'_>], spread: &Spread, tunables: &Tunables) -> Parameters {
+/// Changes of the standard parameters for one deviation of each of the model's parameters.
+fn prior(records: &[Record<'_>], spread: &Spread, tunables: &Tunables) -> DMatrix<f64> {
     let motions: Vec<&Motion<'_>> = records.iter().map(|record| &record.motion).collect();
-    let mut all = Parameters {
-        names: Vec::new(),
-        deviations: Vec::new(),
-        mixing: DMatrix::zeros(0, 0),
-        series: Vec::new(),
-    };
-    let Some(first) = motions.first() else { return all };
+    let Some(first) = motions.first() else { return DMatrix::zeros(0, 0) };
     let (model, n) = (first.model, first.model.dof);
-    all.mixing = DMatrix::zeros(parameter_count(n), parameter_count(n));
+    let mut mixing = DMatrix::zeros(parameter_count(n), parameter_count(n));
     for (number, link) in model.links.iter().enumerate() {
-        for (k, (change, size)) in of_link(link, spread).into_iter().enumerate() {
+        for (k, change) in of_link(link, spread).into_iter().enumerate() {
             let column = RIGID * number + k;
             for (row, value) in change.into_iter().enumerate() {
-                all.mixing[(RIGID * number + row, column)] = value;
+                mixing[(RIGID * number + row, column)] = value;
             }
-            all.names.push(format!("link {} {}", number + 1, LINK[k]));
-            all.deviations.push(size);
         }
     }
     for joint in 0..n {
@@ -122,22 +124,43 @@ fn prior(records: &[Record<'_>], spread: &Spread, tunables: &Tunables) -> Parame
         ];
         for (k, size) in sizes.into_iter().enumerate() {
             let column = RIGID * n + JOINT * joint + k;
-            all.mixing[(column, column)] = size;
-            all.names.push(format!("joint {} {}", joint + 1, OF_JOINT[k]));
-            all.deviations.push(size);
+            mixing[(column, column)] = size;
         }
     }
-    all
+    mixing
 }
 
-/// What one deviation of each parameter of the model adds.
-fn of_model(motion: &Motion<'_>, mixing: &DMatrix<f64>) -> Vec<Reached> {
+/// Directions of the parameters whose torques can be seen in records, in columns.
+fn shown(all: &[Vec<Series>], records: &[Record<'_>], count: usize) -> DMatrix<f64> {
+    let mut products = DMatrix::zeros(count, count);
+    for (record, series) in records.iter().zip(all) {
+        for (joint, columns) in series.iter().enumerate() {
+            let torque = rms(record.motion.torque[joint].iter()).max(f64::MIN_POSITIVE);
+            products += columns.transpose() * columns / (UNSEEN * torque).powi(2);
+        }
+    }
+    let eigen = products.symmetric_eigen();
+    let seen: Vec<usize> = (0..count).filter(|k| eigen.eigenvalues[*k] > NOTHING).collect();
+    eigen.eigenvectors.select_columns(&seen)
+}
+
+/// The series along directions.
+fn along(series: &[Series], directions: &DMatrix<f64>) -> Vec<Reached> {
+    let all: Vec<Series> = series.iter().map(|of| of * directions).collect();
+    let of = |k: usize| {
+        let of_joint = all.iter().enumerate();
+        of_joint.map(|(joint, of)| (joint, of.column(k).as_slice().to_vec())).collect()
+    };
+    (0..directions.ncols()).map(of).collect()
+}
+
+/// What one deviation of each parameter of the model adds, by joint.
+fn of_model(motion: &Motion<'_>, mixing: &DMatrix<f64>) -> Vec<Series> {
     let model = motion.model;
     let (n, rows, count) = (model.dof, motion.rows(), mixing.ncols());
     let mut scratch = Regressor::new();
     let mut regressor = DMatrix::zeros(n, count);
-    let mut series: Vec<Reached> =
-        (0..count).map(|_| (0..n).map(|joint| (joint, vec![0.0; rows])).collect()).collect();
+    let mut series = vec![Series::zeros(rows, count); n];
     for row in 0..rows {
         let [mut q, qd, qdd] = motion.state(row);
         for (q, offset) in q.iter_mut().zip(&model.sensors.position_offset) {
@@ -145,21 +168,13 @@ fn of_model(motion: &Motion<'_>, mixing: &DMatrix<f64>) -> Vec<Reached> {
         }
         let state = [&q[..n], &qd[..n], &qdd[..n]];
         write_rows(model, &mut scratch, state, &mut regressor, 0);
-        for joint in 0..n {
+        for (joint, of) in series.iter_mut().enumerate() {
             // A joint that counts as at rest has no sense.
             regressor[(joint, RIGID * n + JOINT * joint + 2)] = motion.senses[joint][row];
-        }
-        let changed = &regressor * mixing;
-        for (parameter, of) in series.iter_mut().enumerate() {
-            for (joint, of) in of.iter_mut() {
-                of[row] = changed[(*joint, parameter)];
-            }
+            of.row_mut(row).copy_from(&regressor.row(joint));
         }
     }
-    for of in &mut series {
-        of.retain(|(_, series)| series.iter().any(|x| *x != 0.0));
-    }
-    series
+    series.into_iter().map(|of| of * mixing).collect()
 }
 
 /// What a lag of all torques changes, and by how much a delay differs from a lag \[s\].
@@ -179,30 +194,27 @@ fn of_path(motion: &Motion<'_>, [lag, form]: [f64; 2]) -> [Reached; 2] {
 }
 
 /// Changes of the ten parameters of a link for one deviation of mass, centre and inertia.
-fn of_link(link: &Link, spread: &Spread) -> Vec<([f64; RIGID], f64)> {
+fn of_link(link: &Link, spread: &Spread) -> Vec<[f64; RIGID]> {
     let before = link_parameters(link);
     let moment = (link.inertia.trace() / 3.0).abs();
     let mut all = Vec::with_capacity(RIGID);
-    let push = |all: &mut Vec<([f64; RIGID], f64)>, changed: Link, size: f64| {
+    let push = |all: &mut Vec<[f64; RIGID]>, changed: Link| {
         let after = link_parameters(&changed);
         let mut change = [0.0; RIGID];
         for (to, (after, before)) in change.iter_mut().zip(after.iter().zip(&before)) {
             *to = after - before;
         }
-        all.push((change, size));
+        all.push(change);
     };
     let mass = spread.mass * link.mass;
-    push(&mut all, Link { mass: link.mass + mass, ..link.clone() }, mass);
+    push(&mut all, Link { mass: link.mass + mass, ..link.clone() });
     for axis in 0..3 {
         let changed = Link { com: link.com + Vector3::ith(axis, SMALL), ..link.clone() };
-        push(&mut all, changed, SMALL);
+        push(&mut all, changed);
     }
     // To first order: a large deviation is no displaced body.
-    for (change, size) in &mut all[1..] {
-        for x in change.iter_mut() {
-            *x *= spread.com / SMALL;
-        }
-        *size = spread.com;
+    for x in all[1..].iter_mut().flatten() {
+        *x *= spread.com / SMALL;
     }
     for (row, column) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)] {
         let own = link.inertia[(row, column)].abs();
@@ -214,7 +226,7 @@ fn of_link(link: &Link, spread: &Spread) -> Vec<([f64; RIGID], f64)> {
         if row != column {
             inertia[(column, row)] += size;
         }
-        push(&mut all, Link { inertia, ..link.clone() }, size);
+        push(&mut all, Link { inertia, ..link.clone() });
     }
     all
 }

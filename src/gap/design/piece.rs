@@ -64,7 +64,7 @@ impl Whole {
         let mut shape: Vec<f64> = effect.coordinates.iter().map(|c| (c.usual)(&scale)).collect();
         let n = shape.len();
         shape[n - 3..].copy_from_slice(&[-LONG, LONG, 0.0]);
-        let columns = columns_at(effect, records, joint, &shape);
+        let columns = columns_at(effect, records, joint, &shape, true);
         let joint = (effect.scope == Scope::Joint).then_some(joint);
         Some(Whole { effect, joint, shape, columns })
     }
@@ -76,39 +76,85 @@ impl Whole {
         design: &Design,
         records: &[Record<'_>],
         [start, end]: [f64; 2],
-        period: f64,
-        clock: Clock,
-        choices: usize,
+        times: &Times,
+    ) -> PieceRows {
+        let acts = |t: f64| {
+            (start..=end).contains(&t)
+                || (times.period > 0.0 && (start..=end).contains(&(t + times.period)))
+        };
+        let columns = self.columns.iter().map(|column| cut(column, records, times, &acts));
+        self.piece(design, records, columns.collect(), [start, end], times)
+    }
+
+    /// The columns of the effect in each of `count` parts of a time \[s\], one after another.
+    #[must_use]
+    pub(in crate::gap) fn parts(
+        &self,
+        design: &Design,
+        records: &[Record<'_>],
+        (part, count): (f64, usize),
+        times: &Times,
+    ) -> PieceRows {
+        let of_part = |k: usize| {
+            let acts = move |t: f64| (t / part) as usize == k;
+            self.columns.iter().map(move |column| cut(column, records, times, &acts))
+        };
+        let columns = (0..count).flat_map(of_part).collect();
+        self.piece(design, records, columns, [0.0, part * count as f64], times)
+    }
+
+    fn piece(
+        &self,
+        design: &Design,
+        records: &[Record<'_>],
+        columns: Vec<Column>,
+        [start, end]: [f64; 2],
+        times: &Times,
     ) -> PieceRows {
         let mut shape = self.shape.clone();
         let n = shape.len();
-        shape[n - 3..].copy_from_slice(&[start, end, period]);
-        let cut = |(record, series): (&Record<'_>, &Vec<(usize, Vec<f64>)>)| {
-            let of = |(joint, series): &(usize, Vec<f64>)| {
-                let pairs = series.iter().zip(&record.motion.t);
-                let begins = record.times.first().map_or(0.0, |(begins, _)| *begins);
-                let offset = if clock == Clock::Absolute { begins } else { 0.0 };
-                let acts = |t: f64| {
-                    let t = t + offset;
-                    let t = if period > 0.0 { t.rem_euclid(period) } else { t };
-                    (start..=end).contains(&t)
-                        || (period > 0.0 && (start..=end).contains(&(t + period)))
-                };
-                (*joint, pairs.map(|(x, t)| if acts(*t) { *x } else { 0.0 }).collect())
-            };
-            series.iter().map(of).collect()
+        shape[n - 3..].copy_from_slice(&[start, end, times.period]);
+        let piece = Piece { joint: self.joint, shape, choices: times.choices, columns };
+        PieceRows { clock: times.clock, ..to_rows(design, records, self.effect, piece) }
+    }
+}
+
+/// How windows come again.
+#[derive(Clone, Copy)]
+pub(in crate::gap) struct Times {
+    /// Time after which they do \[s\]; 0: never.
+    pub period: f64,
+    /// By which time.
+    pub clock: Clock,
+    /// Number of windows that are tried.
+    pub choices: usize,
+}
+
+/// A column at the times at which an effect acts.
+fn cut(
+    column: &Column,
+    records: &[Record<'_>],
+    times: &Times,
+    acts: &dyn Fn(f64) -> bool,
+) -> Column {
+    let of_record = |(record, series): (&Record<'_>, &Vec<(usize, Vec<f64>)>)| {
+        let begins = record.times.first().map_or(0.0, |(begins, _)| *begins);
+        let offset = if times.clock == Clock::Absolute { begins } else { 0.0 };
+        let at = |t: &f64| {
+            let t = t + offset;
+            if times.period > 0.0 { t.rem_euclid(times.period) } else { t }
         };
-        let columns = self
-            .columns
-            .iter()
-            .map(|column| Column {
-                series: records.iter().zip(&column.series).map(cut).collect(),
-                mean: column.mean,
-                sd: column.sd,
-            })
-            .collect();
-        let piece = Piece { joint: self.joint, shape, choices, columns };
-        PieceRows { clock, ..to_rows(design, records, self.effect, piece) }
+        let kept: Vec<f64> =
+            record.motion.t.iter().map(|t| f64::from(u8::from(acts(at(t))))).collect();
+        let of = |(joint, series): &(usize, Vec<f64>)| {
+            (*joint, series.iter().zip(&kept).map(|(x, kept)| x * kept).collect())
+        };
+        series.iter().map(of).collect()
+    };
+    Column {
+        series: records.iter().zip(&column.series).map(of_record).collect(),
+        mean: column.mean,
+        sd: column.sd,
     }
 }
 
@@ -153,9 +199,10 @@ pub(in crate::gap) fn link_pieces(design: &Design, effect: &'static Effect) -> P
     // What the last link has more is what it carries.
     (0..n.saturating_sub(1))
         .map(|link| {
+            let of_link = design.parameters.of_link(link).transpose();
             let rows = design.joints.iter().filter_map(|joint| {
-                let columns = joint.base.columns(RIGID * link, RIGID);
-                let mut rows = columns * design.tunables.link_change;
+                let columns = joint.base.columns(0, design.parameters.of_model());
+                let mut rows = columns * &of_link * design.tunables.link_change;
                 for cell in joint.cells.iter().filter(|cell| cell.set != Set::Now) {
                     rows.rows_mut(cell.rows.start, cell.rows.len()).fill(0.0);
                 }
@@ -176,10 +223,17 @@ pub(in crate::gap) fn link_pieces(design: &Design, effect: &'static Effect) -> P
 }
 
 impl PieceRows {
-    /// The same effect with other values of its shape.
+    /// The same effect with other values of its shape; tangents tell how it changes with them.
     #[must_use]
-    pub fn reshaped(&self, design: &Design, records: &[Record<'_>], shape: &[f64]) -> PieceRows {
-        let columns = columns_at(self.effect, records, self.joint.unwrap_or(0), shape);
+    pub fn reshaped(
+        &self,
+        design: &Design,
+        records: &[Record<'_>],
+        shape: &[f64],
+        with_tangents: bool,
+    ) -> PieceRows {
+        let joint = self.joint.unwrap_or(0);
+        let columns = columns_at(self.effect, records, joint, shape, with_tangents);
         let piece =
             Piece { joint: self.joint, shape: shape.to_vec(), choices: self.choices, columns };
         to_rows(design, records, self.effect, piece).with_brought(&self.brought())
@@ -297,18 +351,6 @@ impl PieceRows {
     #[must_use]
     pub(in crate::gap) fn is_fixed(&self) -> bool {
         self.prior.iter().any(|(mean, _)| *mean != 0.0)
-    }
-
-    /// The piece at just its shape.
-    #[must_use]
-    pub fn without_tangents(&self) -> PieceRows {
-        let is_shape = |role: &Role| matches!(role, Role::Shape(_));
-        let shapes = self.effect.coordinates.iter().filter(|of| is_shape(&of.role)).count();
-        let mut piece = self.clone();
-        for (k, (_, sd)) in piece.prior[..self.own].iter_mut().enumerate() {
-            *sd = if k % (1 + shapes) == 0 { *sd } else { 0.0 };
-        }
-        piece
     }
 }
 

@@ -1,6 +1,6 @@
 //! The model with what was found of it.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 use crate::arm::dynamics::{JOINT, RIGID, link_of, link_parameters};
 use crate::arm::effects::{Effect, Form, Nature, Scope, applied};
@@ -31,20 +31,12 @@ impl Improved {
         Improved { applied: reapplied(&written), written }
     }
 
-    /// A model with changes `parameters` (in deviations, which `mixing` turns into standard
-    /// parameters) and with effects. Effects that no robot file can have are left out.
+    /// A model with changes of its standard parameters, of which `sizes` are usual, and with effects.
+    /// Effects that no robot file can have are left out.
     #[must_use]
-    pub fn new(
-        model: &Model,
-        mixing: &DMatrix<f64>,
-        parameters: &DVector<f64>,
-        effects: &[Fitted],
-    ) -> Improved {
+    pub fn new(model: &Model, [change, sizes]: [&DVector<f64>; 2], effects: &[Fitted]) -> Improved {
         let mut written = model.clone();
-        let count = mixing.ncols().min(parameters.len());
-        let used = mixing.columns(0, count);
-        let sizes = DVector::from_fn(used.nrows(), |row, _| used.row(row).norm());
-        refit(&mut written, &(used * parameters.rows(0, count)), &sizes);
+        refit(&mut written, change, sizes);
         let mut result = Improved::of(written);
         // What dry friction there is bounds how far it may fall.
         let is_parameter = |of: &&Fitted| of.effect.nature != Nature::Law;

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::hypothesis::{Extra, Hypothesis};
 use super::reduced::{Reduced, variance};
 use super::sizes::{JointSizes, Size, Sizes, without_everyday};
-use crate::gap::design::{Cell, Design, Group, JointDesign, Set};
+use crate::gap::design::{Cell, Design, Group, JointDesign, Packed, Set};
 
 /// The logs with a hypothesis.
 #[derive(Clone)]
@@ -162,7 +162,7 @@ impl Fit {
             })
             .collect();
         self.reduced = all?;
-        self.solve(parameters, design.parameters.mixing.ncols())
+        self.solve(parameters, design.parameters.of_model())
     }
 
     /// Parameters and factors of effects, and the evidence.
@@ -392,7 +392,7 @@ impl Fit {
                 omega[(place_u(i), place_u(k))] += scale[i] * scale[k] * variance_u[(i, k)];
             }
         }
-        let base = omega.view((0, 0), (size, size)).into_owned();
+        let base = Packed::doubled(&omega.view((0, 0), (size, size)).into_owned());
         let with = omega.view((0, size), (size, h + f)).into_owned();
         let own = omega.view((size, size), (h + f, h + f)).into_owned();
         (0..design.cells.len())

@@ -128,7 +128,32 @@ impl<'a> Gains<'a> {
     pub(in crate::gap) fn of(&self, piece: &PieceRows, below: f64) -> f64 {
         let products = self.products(&[piece], below);
         let spread = self.design.tunables.amplitude_spread;
-        products.first().map_or(f64::NEG_INFINITY, |of| best(of, piece, spread))
+        products.first().map_or(f64::NEG_INFINITY, |of| best(of, &piece.prior, spread))
+    }
+
+    /// Gains of sums of the parts `from..to` of a piece whose columns are those of `count` parts, one
+    /// after another; parts after the last one are the first ones.
+    #[must_use]
+    pub(in crate::gap) fn of_sums(
+        &self,
+        piece: &PieceRows,
+        count: usize,
+        sums: &[[usize; 2]],
+        below: f64,
+    ) -> Vec<f64> {
+        let width = piece.prior.len() / count;
+        let products = self.products(&[piece], below);
+        let Some((a, b)) = products.first() else { return Vec::new() };
+        let prior = &piece.prior[..width];
+        let gain = |[from, to]: &[usize; 2]| {
+            let mut sum = DMatrix::zeros(count * width, width);
+            for k in *from..*to {
+                sum.view_mut((width * (k % count), 0), (width, width)).fill_with_identity();
+            }
+            let of_sum = (sum.tr_mul(&(a * &sum)), sum.tr_mul(b));
+            best(&of_sum, prior, self.design.tunables.amplitude_spread)
+        };
+        sums.iter().map(gain).collect()
     }
 
     /// Gains of all pieces, and what the columns gain by themselves that each brings along. What a
@@ -165,16 +190,16 @@ fn most(products: &(DMatrix<f64>, DVector<f64>), piece: &PieceRows, spread: f64)
     match piece.is_fixed() {
         true if b[0] > 0.0 => 0.5 * b[0] * b[0] / a[(0, 0)].max(f64::MIN_POSITIVE),
         true => f64::NEG_INFINITY,
-        false => best(products, piece, spread),
+        false => best(products, &piece.prior, spread),
     }
 }
 
 /// The gain of a piece over the amplitudes that are tried.
-fn best((a, b): &(DMatrix<f64>, DVector<f64>), piece: &PieceRows, spread: f64) -> f64 {
-    let tried: &[f64] = if piece.is_fixed() { &[1.0] } else { &TRIED };
-    let gain = |amplitude: &f64| {
-        gain(a, b, &piece.prior, *amplitude) - 0.5 * (amplitude.ln() / spread).powi(2)
-    };
+fn best((a, b): &(DMatrix<f64>, DVector<f64>), prior: &[(f64, f64)], spread: f64) -> f64 {
+    let is_fixed = prior.iter().any(|(mean, _)| *mean != 0.0);
+    let tried: &[f64] = if is_fixed { &[1.0] } else { &TRIED };
+    let gain =
+        |amplitude: &f64| gain(a, b, prior, *amplitude) - 0.5 * (amplitude.ln() / spread).powi(2);
     tried.iter().map(gain).fold(f64::NEG_INFINITY, f64::max)
 }
 

@@ -4,7 +4,7 @@ use nalgebra::{Cholesky, DMatrix, Dyn};
 
 use super::hypothesis::Extra;
 use super::sizes::JointSizes;
-use crate::gap::design::{Cell, Group, JointDesign, Set};
+use crate::gap::design::{Cell, Group, JointDesign, Packed, Set};
 
 /// Weighted products of a joint whose everyday errors are marginalised.
 ///
@@ -57,8 +57,9 @@ impl Products {
     fn new(design: &JointDesign, extra: &Extra, sizes: &JointSizes) -> (Products, f64) {
         let count = 1 + design.base.ncols();
         let more = extra.transposed.nrows();
+        let mut base = Packed::zeros(count);
         let mut sum = Products {
-            base: DMatrix::zeros(count, count),
+            base: DMatrix::zeros(0, 0),
             with: DMatrix::zeros(count, more),
             own: DMatrix::zeros(more, more),
         };
@@ -67,10 +68,11 @@ impl Products {
             let variance = variance(cell, sizes, extra.laws[k]);
             let weight = 1.0 / variance;
             log_weights -= 0.5 * cell.rows.len() as f64 * variance.ln();
-            sum.base.zip_apply(&design.grams[k], |to, x| *to += weight * x);
+            base.add(weight, &design.grams[k]);
             sum.with.zip_apply(&extra.with_base[k], |to, x| *to += weight * x);
             sum.own.zip_apply(&extra.own[k], |to, x| *to += weight * x);
         }
+        sum.base = base.whole();
         (sum, log_weights)
     }
 }
