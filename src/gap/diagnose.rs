@@ -18,8 +18,8 @@ use crate::arm::effects::{Acts, Effect, Nature};
 use crate::arm::robot::Model;
 use crate::learn::identify::Samples;
 
-/// Steps of the sizes of errors of a model that is written.
-const STEPS: usize = 8;
+/// Steps of the sizes of errors of a model that is written: least and most.
+const STEPS: [usize; 2] = [8, 32];
 /// Everyday error of held-out data, of the torque.
 const EVERYDAY: f64 = 0.01;
 /// Share of a joint's torque that no model of this robot misses.

@@ -8,15 +8,18 @@ use super::window::Windows;
 use crate::gap::data::Record;
 use crate::gap::design::{Design, Group, PieceRows, link_pieces, piece_rows};
 use crate::gap::model::Fitted;
-use crate::gap::posterior::{Fit, Gains, Hypothesis, Member, Sizes, fitted, usual};
+use crate::gap::posterior::{Fit, Gains, Hypothesis, Member, Sizes, Start, fitted, usual};
 
 /// Families that are fitted in full in each round.
 const FULL: usize = 6;
 /// Effects that are found together at most.
 const MOST: usize = 3;
-/// Steps of the sizes: of a first fit, and of a fit with an effect.
-const FIRST: usize = 10;
-const ROUNDS: usize = 6;
+/// Steps of the sizes, least and most: of a first fit, of a first look at a set, of a fit with a set.
+const FIRST: [usize; 2] = [10, 40];
+const LOOK: [usize; 2] = [3, 3];
+const STEPS: [usize; 2] = [6, 24];
+/// A fit at given sizes.
+const NO_STEPS: [usize; 2] = [0, 0];
 /// Deviations by which a parameter may be beyond what is possible.
 pub(super) const BEYOND: f64 = 2.0;
 /// Sets whose shapes are refined in each round.
@@ -106,7 +109,7 @@ impl Search<'_> {
     /// The fit without effects.
     #[must_use]
     pub(in crate::gap) fn none_of(design: &Design) -> Option<Found> {
-        let fit = fitted(design, Hypothesis::default(), usual(design), FIRST, false)?;
+        let fit = fitted(design, Hypothesis::default(), Start::at(usual(design)), FIRST)?;
         Some(Found { effects: Vec::new(), score: 0.0, fit })
     }
 
@@ -164,22 +167,26 @@ impl Search<'_> {
         all
     }
 
-    /// The fit with a set of effects, from sizes.
+    /// The fit with a set of effects.
     #[must_use]
-    pub(in crate::gap) fn with(&self, base: &Found, effects: Vec<Candidate>) -> Option<Found> {
+    pub(in crate::gap) fn with(&self, none: &Found, effects: Vec<Candidate>) -> Option<Found> {
+        self.fit([none, none], effects, STEPS)
+    }
+
+    /// The fit with a set of effects near another one, with so many steps of the sizes.
+    fn fit(
+        &self,
+        [none, near]: [&Found; 2],
+        effects: Vec<Candidate>,
+        steps: [usize; 2],
+    ) -> Option<Found> {
         let pieces = effects.iter().flat_map(|of| of.pieces.iter().cloned());
         let members = pieces.map(|piece| Member::new(self.design, self.records, piece)).collect();
         let hypothesis = Hypothesis { members };
-        // Sizes that made up for an effect are too large with it, and would shrink slowly.
-        let mut sizes = base.fit.sizes.clone();
-        for (joint, usual) in usual(self.design).into_iter().enumerate() {
-            if hypothesis.reaches(joint) {
-                sizes[joint] = usual;
-            }
-        }
-        let fit = fitted(self.design, hypothesis, sizes, ROUNDS, true)?;
+        let start = Start::near(self.design, &hypothesis, [&none.fit, &near.fit]);
+        let fit = fitted(self.design, hypothesis, start, steps)?;
         let cost: f64 = effects.iter().map(|of| of.cost).sum();
-        let score = fit.log_evidence - base.fit.log_evidence - cost;
+        let score = fit.log_evidence - none.fit.log_evidence - cost;
         Some(Found { effects, fit, score })
     }
 
@@ -239,7 +246,11 @@ impl Search<'_> {
     ) -> Option<Found> {
         let mut effects = found.effects.clone();
         effects.retain(|of| !ids.contains(&of.effect.id));
-        if effects.is_empty() { Some(none.clone()) } else { self.with(none, effects) }
+        if effects.is_empty() {
+            Some(none.clone())
+        } else {
+            self.fit([none, found], effects, STEPS)
+        }
     }
 
     /// The set without one of its effects.
@@ -252,7 +263,7 @@ impl Search<'_> {
     ) -> Option<Found> {
         let mut effects = found.effects.clone();
         effects.remove(effect);
-        self.with(none, effects)
+        self.fit([none, found], effects, STEPS)
     }
 
     /// The set without one piece of one of its effects.
@@ -267,14 +278,14 @@ impl Search<'_> {
         let mut effects = found.effects.clone();
         let gone = effects[effect].pieces.remove(piece);
         effects[effect].cost -= self.cost_of(&gone);
-        self.with(none, effects)
+        self.fit([none, found], effects, STEPS)
     }
 
     /// The best sets with one effect more than `found`, best first.
     #[must_use]
     fn next(&self, none: &Found, found: &Found) -> Vec<Found> {
-        let usual_sizes = usual(self.design);
-        let plain = fitted(self.design, found.fit.hypothesis.clone(), usual_sizes, 0, true);
+        let at_usual = Start::at(usual(self.design));
+        let plain = fitted(self.design, found.fit.hypothesis.clone(), at_usual, NO_STEPS);
         let mut wanted: Vec<Candidate> = Vec::new();
         for fit in std::iter::once(&found.fit).chain(plain.iter()) {
             let all = Gains::new(self.design, fit);
@@ -301,7 +312,7 @@ impl Search<'_> {
             .filter_map(|candidate| {
                 let mut effects = found.effects.clone();
                 effects.push(candidate);
-                self.possible(none, self.with(none, effects)?)
+                self.possible([none, found], self.fit([none, found], effects, LOOK)?)
             })
             .collect();
         all.sort_by(|a, b| b.score.total_cmp(&a.score));
@@ -346,7 +357,7 @@ impl Search<'_> {
     }
 
     /// The set without pieces of its last effect whose parameters cannot be; `None` where none is left.
-    fn possible(&self, none: &Found, of: Found) -> Option<Found> {
+    fn possible(&self, known: [&Found; 2], of: Found) -> Option<Found> {
         let mut effects = of.effects.clone();
         let last = effects.last_mut()?;
         let fitted = Fitted::of_fit(&of.fit);
@@ -360,7 +371,7 @@ impl Search<'_> {
             last.cost -= if kept.contains(&k) { 0.0 } else { self.cost_of(gone) };
         }
         last.pieces = kept.iter().map(|k| last.pieces[*k].clone()).collect();
-        if last.pieces.is_empty() { None } else { self.with(none, effects) }
+        if last.pieces.is_empty() { None } else { self.fit(known, effects, LOOK) }
     }
 
     /// Prior cost of a piece \[nats\].
@@ -368,25 +379,22 @@ impl Search<'_> {
         self.design.tunables.joint_cost + (piece.choices.max(1) as f64).ln()
     }
 
-    /// The same set with the best shapes of its last effect.
+    /// The same set with the best shapes of its last effect, fitted in full.
     fn refined(&self, none: &Found, found: &Found, of: Found) -> Found {
         let Some(last) = of.effects.last() else { return of };
-        let without =
-            fitted(self.design, found.fit.hypothesis.clone(), without_forms(&of, found), 0, true);
+        let sizes = Start::at(without_forms(&of, found));
+        let without = fitted(self.design, found.fit.hypothesis.clone(), sizes, NO_STEPS);
         let Some(without) = without else { return of };
         let gains = Gains::new(self.design, &without);
         let pieces: Vec<PieceRows> =
             last.pieces.iter().map(|piece| self.best_shape(&gains, piece)).collect();
-        if pieces.iter().zip(&last.pieces).all(|(a, b)| a.shape == b.shape) {
-            return of;
-        }
         let mut effects = of.effects.clone();
         if let Some(last) = effects.last_mut() {
             last.pieces = pieces;
         }
-        match self.with(none, effects) {
+        match self.fit([none, found], effects, STEPS) {
             Some(better) if better.score > of.score => better,
-            _ => of,
+            _ => self.fit([none, found], of.effects.clone(), STEPS).unwrap_or(of),
         }
     }
 }

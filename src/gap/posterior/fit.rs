@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::hypothesis::{Extra, Hypothesis};
 use super::reduced::{Reduced, variance};
 use super::sizes::{JointSizes, Size, Sizes, without_everyday};
+use super::start::Start;
 use crate::gap::design::{Cell, Design, Group, JointDesign, Packed, Set};
 
 /// The logs with a hypothesis.
@@ -31,22 +32,18 @@ pub(in crate::gap) struct Fit {
 
 /// Gain of a step after which no further one is made \[nats\].
 const CONVERGED: f64 = 0.5;
-/// How many times more steps are made at most.
-const LONGER: usize = 4;
 /// Curvature that is added where a size hardly matters.
 const LEAST_CURVATURE: f64 = 0.3;
 
-/// Fits a hypothesis from sizes, with `rounds` steps of the sizes. Joints that the hypothesis does
-/// not reach keep their sizes where `touched_only`.
+/// Fits a hypothesis, with so many steps of the sizes at least and at most.
 #[must_use]
 pub(in crate::gap) fn fitted(
     design: &Design,
     hypothesis: Hypothesis,
-    sizes: Sizes,
-    rounds: usize,
-    touched_only: bool,
+    start: Start,
+    steps: [usize; 2],
 ) -> Option<Fit> {
-    fit_from(design, hypothesis, (sizes, 1.0), rounds, touched_only)
+    fit_from(design, hypothesis, (start, 1.0), steps)
 }
 
 /// Fits a hypothesis with what a written model has: neither everyday errors nor lags of the torques.
@@ -54,29 +51,28 @@ pub(in crate::gap) fn fitted(
 pub(in crate::gap) fn fitted_as_written(
     design: &Design,
     hypothesis: Hypothesis,
-    rounds: usize,
+    steps: [usize; 2],
 ) -> Option<Fit> {
-    fit_from(design, hypothesis, (without_everyday(design), 0.0), rounds, false)
+    fit_from(design, hypothesis, (Start::at(without_everyday(design)), 0.0), steps)
 }
 
 fn fit_from(
     design: &Design,
     hypothesis: Hypothesis,
-    (sizes, path): (Sizes, f64),
-    rounds: usize,
-    touched_only: bool,
+    (start, path): (Start, f64),
+    [least, most]: [usize; 2],
 ) -> Option<Fit> {
     let extra: Vec<Extra> = (0..design.joints.len())
         .into_par_iter()
         .map(|joint| hypothesis.extra(design, joint))
         .collect();
-    let amplitudes = vec![
-        Size { value: 1.0, median: 1.0, spread: design.tunables.amplitude_spread };
-        hypothesis.members.len()
-    ];
+    let spread = design.tunables.amplitude_spread;
+    let known = start.amplitudes.into_iter().chain(std::iter::repeat(1.0));
+    let amplitudes = known.take(hypothesis.members.len());
+    let amplitudes = amplitudes.map(|value| Size { value, median: 1.0, spread }).collect();
     let mut fit = Fit {
         hypothesis,
-        sizes,
+        sizes: start.sizes,
         amplitudes,
         log_evidence: f64::NEG_INFINITY,
         mean: DVector::zeros(0),
@@ -89,13 +85,13 @@ fn fit_from(
     fit.reduce(design, |_| true)?;
     // Sizes that are far off need more steps.
     let mut before = f64::NEG_INFINITY;
-    for round in 0..LONGER * rounds {
-        if round >= rounds && fit.log_evidence - before < CONVERGED {
+    for round in 0..most {
+        if round >= least && fit.log_evidence - before < CONVERGED {
             break;
         }
         before = fit.log_evidence;
         let known = (fit.sizes.clone(), fit.amplitudes.clone());
-        if fit.step(design, touched_only).is_none() {
+        if fit.step(design, &start.is_open).is_none() {
             // Sizes of which nothing can be computed.
             (fit.sizes, fit.amplitudes) = known;
             fit.reduced.clear();
@@ -205,13 +201,12 @@ impl Fit {
         Some(())
     }
 
-    /// A step of all sizes, and the posterior with them.
-    fn step(&mut self, design: &Design, touched_only: bool) -> Option<()> {
+    /// A step of the sizes of some joints, and the posterior with them.
+    fn step(&mut self, design: &Design, is_open: &[bool]) -> Option<()> {
         let parameters = design.parameters.count();
-        let is_touched = |joint: usize| !touched_only || self.hypothesis.reaches(joint);
         let steps: Vec<Option<JointSizes>> = (0..design.joints.len())
             .into_par_iter()
-            .map(|joint| is_touched(joint).then(|| self.joint_step(&design.joints[joint], joint)))
+            .map(|joint| is_open[joint].then(|| self.joint_step(&design.joints[joint], joint)))
             .collect();
         self.amplitude_step(parameters);
         let mut changed = vec![false; steps.len()];
@@ -228,7 +223,10 @@ impl Fit {
                 *laws /= cell.rows.len() as f64;
             }
         }
-        self.reduce(design, |joint| changed[joint])
+        // What laws miss follows their sizes.
+        let has_laws: Vec<bool> =
+            (0..changed.len()).map(|joint| self.hypothesis.reaches(joint)).collect();
+        self.reduce(design, |joint| changed[joint] || has_laws[joint])
     }
 
     /// A step of the amplitudes of the members.

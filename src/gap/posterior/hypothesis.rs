@@ -67,8 +67,8 @@ impl Hypothesis {
 
     /// Whether it changes the torque of a joint.
     #[must_use]
-    pub(in crate::gap) fn reaches(&self, joint: usize) -> bool {
-        self.members.iter().any(|member| member.piece.rows.iter().any(|(of, _)| *of == joint))
+    pub(super) fn reaches(&self, joint: usize) -> bool {
+        self.members.iter().any(|member| member.reaches(joint))
     }
 
     /// The additional columns of a joint.

@@ -105,7 +105,7 @@ fn crossed(motion: &Motion<'_>, joint: usize, gap: f64) -> Vec<(usize, Vec<f64>)
 const DAMPING: f64 = 0.4;
 /// Largest product of eigenfrequency and integration step; largest number of steps per row.
 const FINEST: f64 = 0.3;
-const MOST_STEPS: f64 = 400.0;
+const MOST_STEPS: f64 = 100.0;
 
 /// A gear with a gap and elastic sides.
 struct Gear {
