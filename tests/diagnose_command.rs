@@ -189,6 +189,7 @@ fn wrong_input_is_refused() {
     fs::write(&packed, [0x1f, 0x8b, 8, 0]).unwrap();
     fs::write(&binary, b"MATLAB\x00\x01,t,q1").unwrap();
     for (args, way_out) in [
+        (vec!["--robot", "IRB1600-6/1.45", "--log", &log], "diagnose needs it"),
         (vec!["--robot", &robot, "--log", &few], "q1 to q6"),
         (vec!["--robot", &robot, "--log", &log, "--effects", "stribek"], "stribeck"),
         (vec!["--robot", &robot, "--log", &log, "--period", "0"], "more than 0"),

@@ -85,12 +85,10 @@ tunables! {
     white_spread = 1.5, "ln", "derived";
     /// Median of the deviation of a law's form, of the law.
     form = 0.1, "1", "derived: forms in the literature differ by 5 to 20 %";
-    /// Its spread.
+    /// Its spread, and that of what no form explains.
     form_spread = 0.6, "ln", "chosen on data/gap_cases";
     /// Median of what no form of a law explains, of the law.
     law_error = 0.03, "1", "derived: a third of a form";
-    /// Its spread.
-    law_error_spread = 0.7, "ln", "derived";
     /// Spread of an effect's amplitude about its usual one.
     amplitude_spread = 1.0, "ln", "derived: effects are usual within a factor of 3";
     /// How many times more than it is trusted a link may have changed.
@@ -99,12 +97,6 @@ tunables! {
     effect_cost = 3.0, "nats", "derived: one of 20 effects";
     /// Cost of a joint.
     joint_cost = 1.2, "nats", "derived: three of ten joints";
-    /// Rate below which rows are left out.
-    rest = 0.02, "rad/s", "derived: friction has no sense there";
-    /// Rows that a filter spoils beside a rest, in periods of its cut-off frequency.
-    filter_reach = 0.8, "1", "derived: the main lobe of the filter";
-    /// Amplitude of the last harmonics, of the largest one, of a motion that has no more.
-    sharp = 1e-3, "1", "derived: moves fall by the third power, below 1e-3 at the tenth";
     /// Least evidence of an effect.
     least_nats = 8.0, "nats", "derived: 1 to 3000";
     /// Least evidence of a further joint.

@@ -16,7 +16,7 @@ use joulepath::gap::{
 };
 use joulepath::learn::identify::Samples;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 use excited::{irb1600, normal};
 use simulated::{Robot, perturbed};
@@ -410,9 +410,9 @@ fn a_diagnosed_load_is_added_to_the_listed_one() {
         parameters: payload.parameters_of(&LOAD),
         deviations: vec![0.1; LOAD.len()],
     };
-    let none = DMatrix::zeros(0, 0);
+    let none = DVector::zeros(0);
     let loaded = |model: &Model| {
-        Improved::new(model, &none, &DVector::zeros(0), std::slice::from_ref(&fitted)).written
+        Improved::new(model, [&none, &none], std::slice::from_ref(&fitted)).written
     };
     let twice = loaded(&loaded(&irb1600()));
     for (name, expected) in [("mass", 2.0 * LOAD[0]), ("com_z", LOAD[3] / LOAD[0])] {
@@ -463,13 +463,12 @@ fn impossible_bodies_are_replaced_by_possible_ones_with_the_same_torques() {
     for (link, of) in nominal.links.iter().enumerate() {
         wanted[RIGID * link..RIGID * (link + 1)].copy_from_slice(&link_parameters(of));
     }
-    let mixing =
-        DMatrix::from_diagonal(&DVector::from_fn(count, |k, _| 0.1 * wanted[k].abs() + 1e-3));
+    let sizes = DVector::from_fn(count, |k, _| 0.1 * wanted[k].abs() + 1e-3);
     // A moment of link 5 becomes negative, as far as its neighbours can compensate it.
     let at = RIGID * 4 + 4;
-    let mut parameters = DVector::zeros(count);
-    parameters[at] = -1.2 * wanted[at] / mixing[(at, at)];
-    let found = Improved::new(&nominal, &mixing, &parameters, &[]).written;
+    let mut change = DVector::zeros(count);
+    change[at] = -1.2 * wanted[at];
+    let found = Improved::new(&nominal, [&change, &sizes], &[]).written;
     assert!(found.links.iter().all(|link| link.mass > 0.0 && link.is_consistent()));
     assert_ne!(found.links, nominal.links);
     wanted[at] *= -0.2;

@@ -157,6 +157,13 @@ pub enum Role {
     Shape(fn(&Scale) -> Vec<f64>),
     /// A discrete shape parameter: only tried values are possible.
     Choice(fn(&Scale) -> Vec<f64>),
+    /// How it grows and falls in its window, from 0: at once.
+    Rise {
+        /// The largest value.
+        most: f64,
+        /// The share that acts, from the value and the part of the window that is over.
+        share: fn(f64, f64) -> f64,
+    },
 }
 
 /// Torques per joint \[Nm\] in a motion from the coordinates of a joint (from 0).

@@ -69,16 +69,22 @@ impl Windows {
         let limits = [lowest(records), f64::INFINITY];
         let mut best: Vec<PieceRows> = Vec::new();
         for below in limits {
-            for (times, [start, end]) in self.starts(gains, below) {
-                let within = |[start, end]: [f64; 2]| {
-                    self.whole.within(design, records, [start, end.max(start)], &times)
+            for (times, window) in self.starts(gains, below) {
+                let within = |shape: &[f64]| {
+                    let mut shape = shape.to_vec();
+                    let n = shape.len();
+                    shape[n - 2] = shape[n - 2].max(shape[n - 3]);
+                    if let Some((k, most)) = self.whole.rise() {
+                        shape[k] = shape[k].clamp(0.0, most);
+                    }
+                    self.whole.within(design, records, shape, &times)
                 };
-                let piece = within([start, end]);
+                let piece = within(&self.whole.shape(window, &times));
                 let n = piece.shape.len();
-                let step = 0.5 * self.part;
-                let moves = [n - 3, n - 2].map(|k| Move { coordinate: k, step, is_factor: false });
-                let reshape = |_: &PieceRows, shape: &[f64]| within([shape[n - 3], shape[n - 2]]);
-                best.push(climbed(gains, &piece, &moves, below, &reshape));
+                let by = |coordinate, step| Move { coordinate, step, is_factor: false };
+                let mut moves = vec![by(n - 3, 0.5 * self.part), by(n - 2, 0.5 * self.part)];
+                moves.extend(self.whole.rise().map(|(k, most)| by(k, 0.5 * most)));
+                best.push(climbed(gains, &piece, &moves, below, &|_, shape| within(shape)));
             }
         }
         best

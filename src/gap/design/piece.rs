@@ -8,7 +8,7 @@ use super::column::{Column, Piece, columns_at, pieces};
 use super::problem::Design;
 use super::set::Set;
 use crate::arm::dynamics::RIGID;
-use crate::arm::effects::{self, Effect, Form, Motion, Nature, Role, Scope};
+use crate::arm::effects::{self, Coordinate, Effect, Form, Motion, Nature, Role, Scope};
 use crate::gap::data::{Record, RecordKind};
 
 /// Root mean square of functions of unit size that are seen at all.
@@ -69,21 +69,51 @@ impl Whole {
         Some(Whole { effect, joint, shape, columns })
     }
 
-    /// The effect within a window \[s\].
+    /// The shape of a window \[s\].
+    #[must_use]
+    pub(in crate::gap) fn shape(&self, window: [f64; 2], times: &Times) -> Vec<f64> {
+        let mut shape = self.shape.clone();
+        let n = shape.len();
+        shape[n - 3..].copy_from_slice(&[window[0], window[1], times.period]);
+        shape
+    }
+
+    /// The place of the coordinate by which the effect grows in its window, with its largest value.
+    #[must_use]
+    pub(in crate::gap) fn rise(&self) -> Option<(usize, f64)> {
+        let mut of = self.effect.coordinates.iter().enumerate();
+        of.find_map(|(k, of)| match of.role {
+            Role::Rise { most, .. } => Some((k, most)),
+            _ => None,
+        })
+    }
+
+    /// The effect within the window of a shape.
     #[must_use]
     pub(in crate::gap) fn within(
         &self,
         design: &Design,
         records: &[Record<'_>],
-        [start, end]: [f64; 2],
+        shape: Vec<f64>,
         times: &Times,
     ) -> PieceRows {
-        let acts = |t: f64| {
-            (start..=end).contains(&t)
-                || (times.period > 0.0 && (start..=end).contains(&(t + times.period)))
+        let n = shape.len();
+        let (start, end) = (shape[n - 3], shape[n - 2]);
+        let acting = |t: f64| {
+            let in_window =
+                |t: f64| (start..=end).contains(&t).then_some((t - start) / (end - start));
+            let x = in_window(t)
+                .or_else(|| if times.period > 0.0 { in_window(t + times.period) } else { None });
+            let Some(x) = x else { return 0.0 };
+            let share = |(k, of): (usize, &Coordinate)| match of.role {
+                Role::Rise { share, .. } => share(shape[k], x),
+                _ => 1.0,
+            };
+            self.effect.coordinates.iter().enumerate().map(share).product()
         };
-        let columns = self.columns.iter().map(|column| cut(column, records, times, &acts));
-        self.piece(design, records, columns.collect(), [start, end], times)
+        let columns = self.columns.iter().map(|column| cut(column, records, times, &acting));
+        let columns = columns.collect();
+        self.piece(design, records, columns, shape, times)
     }
 
     /// The columns of the effect in each of `count` parts of a time \[s\], one after another.
@@ -96,11 +126,12 @@ impl Whole {
         times: &Times,
     ) -> PieceRows {
         let of_part = |k: usize| {
-            let acts = move |t: f64| (t / part) as usize == k;
-            self.columns.iter().map(move |column| cut(column, records, times, &acts))
+            let acting = move |t: f64| f64::from(u8::from((t / part) as usize == k));
+            self.columns.iter().map(move |column| cut(column, records, times, &acting))
         };
         let columns = (0..count).flat_map(of_part).collect();
-        self.piece(design, records, columns, [0.0, part * count as f64], times)
+        let shape = self.shape([0.0, part * count as f64], times);
+        self.piece(design, records, columns, shape, times)
     }
 
     fn piece(
@@ -108,12 +139,9 @@ impl Whole {
         design: &Design,
         records: &[Record<'_>],
         columns: Vec<Column>,
-        [start, end]: [f64; 2],
+        shape: Vec<f64>,
         times: &Times,
     ) -> PieceRows {
-        let mut shape = self.shape.clone();
-        let n = shape.len();
-        shape[n - 3..].copy_from_slice(&[start, end, times.period]);
         let piece = Piece { joint: self.joint, shape, choices: times.choices, columns };
         PieceRows { clock: times.clock, ..to_rows(design, records, self.effect, piece) }
     }
@@ -130,12 +158,12 @@ pub(in crate::gap) struct Times {
     pub choices: usize,
 }
 
-/// A column at the times at which an effect acts.
+/// A column, as far as an effect acts at a time.
 fn cut(
     column: &Column,
     records: &[Record<'_>],
     times: &Times,
-    acts: &dyn Fn(f64) -> bool,
+    acting: &dyn Fn(f64) -> f64,
 ) -> Column {
     let of_record = |(record, series): (&Record<'_>, &Vec<(usize, Vec<f64>)>)| {
         let begins = record.times.first().map_or(0.0, |(begins, _)| *begins);
@@ -144,10 +172,9 @@ fn cut(
             let t = t + offset;
             if times.period > 0.0 { t.rem_euclid(times.period) } else { t }
         };
-        let kept: Vec<f64> =
-            record.motion.t.iter().map(|t| f64::from(u8::from(acts(at(t))))).collect();
+        let shares: Vec<f64> = record.motion.t.iter().map(|t| acting(at(t))).collect();
         let of = |(joint, series): &(usize, Vec<f64>)| {
-            (*joint, series.iter().zip(&kept).map(|(x, kept)| x * kept).collect())
+            (*joint, series.iter().zip(&shares).map(|(x, share)| x * share).collect())
         };
         series.iter().map(of).collect()
     };

@@ -73,7 +73,7 @@ impl JointSizes {
         }
         let error = Size::new(t.error, t.error_spread);
         let noise = Size::new(t.white, t.white_spread);
-        let law = Size::new(t.law_error, t.law_error_spread);
+        let law = Size::new(t.law_error, t.form_spread);
         JointSizes { groups, error: [error, error, error, error, error, error, noise, law] }
     }
 

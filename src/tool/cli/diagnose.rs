@@ -15,7 +15,9 @@ use serde_json::Value;
 
 use super::common::{self, Format};
 use super::input::{self, Input};
-use super::logs::{PreparedLog, RawLog, Reader, held_out, hold_out, read_all, refuse_same};
+use super::logs::{
+    PreparedLog, RawLog, Reader, filter_alike, held_out, hold_out, read_all, refuse_same,
+};
 use super::output::{self, is_same_file};
 use crate::arm::effects::{self, ALL, Effect};
 use crate::arm::robot::{Model, Use, nearest, ready, to_toml};
@@ -193,7 +195,6 @@ fn check_paths(args: &DiagnoseArgs) -> anyhow::Result<()> {
 fn run_diagnosis(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> {
     check_paths(args)?;
     let model = effects::load(&args.robot)?;
-    ready(&model, Use::Predict)?;
     common::notes(args.quiet, model.assumed());
     let map = ColumnMap::parse(&args.map)?;
     if let Some(period) = args.period.filter(|p| !(p.is_finite() && *p > 0.0)) {
@@ -210,6 +211,7 @@ fn run_diagnosis(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basi
     if motion::is_alone(&raw) {
         return diagnose_motion(args, &model, &map, raw, &wanted);
     }
+    ready(&model, Use::Diagnose)?;
     let Data { train, held, baseline, heldout, notes } = read_data(args, &model, &map, raw, trust)?;
     // These notes were already shown during reading.
     let shown = notes.len();
@@ -351,7 +353,8 @@ fn read_data(
              at the joints, currents as i1… in A, or the --robot that was logged"
         );
     }
-    let baseline = prepared(read_all(&args.baseline, map, model)?)?;
+    let mut baseline = prepared(read_all(&args.baseline, map, model)?)?;
+    filter_alike(model, [&mut train, &mut held, &mut baseline])?;
     Ok(Data { train, held, baseline, heldout, notes: reader.notes })
 }
 

@@ -41,7 +41,7 @@ pub(in crate::arm::effects) const CONTACT: Effect = Effect {
         linear(usual),
         linear(usual),
         linear(usual),
-        Coordinate { role: Role::Choice(|_| Vec::new()), usual: |_| 0.0 },
+        Coordinate { role: Role::Rise { most: 0.5, share: grown }, usual: |_| 0.0 },
         Coordinate { role: Role::Choice(|_| Vec::new()), usual: shaped },
         Coordinate { role: Role::Choice(|_| Vec::new()), usual: shaped },
         Coordinate { role: Role::Choice(|_| Vec::new()), usual: shaped },
@@ -99,8 +99,12 @@ fn share_of(t: f64, window: &[f64]) -> f64 {
     if !within(t, *start, *end, *period) {
         return 0.0;
     }
-    let x = (in_period(t, *period) - start) / (end - start);
-    if *rise > 0.0 { ((PI * x).sin() / (PI * rise).sin()).min(1.0) } else { 1.0 }
+    grown(*rise, (in_period(t, *period) - start) / (end - start))
+}
+
+/// Acting share of the force at a part of the window.
+fn grown(rise: f64, x: f64) -> f64 {
+    if rise > 0.0 { ((PI * x).sin() / (PI * rise).sin()).min(1.0) } else { 1.0 }
 }
 
 /// A massless arm with a mass at its flange, whose gravity is the force.
