@@ -125,13 +125,13 @@ fn diagnose_telling(
     tell: &dyn Fn(Phase),
 ) -> Diagnosis {
     tell(Phase::Design);
-    let mut design = with_loads(&mut train, settings);
-    tell(Phase::Search);
-    let turned = if is_opposite(&train) { turned(&train, &design, settings) } else { None };
+    // Parameters that are fitted to torques with the other sign are far off.
+    let turned = if is_opposite(&train) { turned(&train, settings) } else { None };
     if let Some(turned) = &turned {
         turned.turn_back(&mut train);
-        design = with_loads(&mut train, settings);
     }
+    let design = with_loads(&mut train, settings);
+    tell(Phase::Search);
     let mut effects = nameable(&train, settings);
     effects.retain(|effect| !effect.coordinates.is_empty());
     let search = Search::new(&train, &design, &effects);
@@ -386,9 +386,11 @@ fn improved(
 }
 
 /// Torques that are logged with the other sign.
-fn turned(train: &[Record<'_>], design: &Design, settings: &Settings) -> Option<Turned> {
-    let search = Search::new(train, design, &nameable(train, settings));
-    Turned::of(&search, Search::none_of(design)?)
+fn turned(train: &[Record<'_>], settings: &Settings) -> Option<Turned> {
+    let design = Design::new(train, settings.trust, &settings.tunables);
+    let signs = settings.effects.iter().copied().filter(|of| of.coordinates.is_empty());
+    let search = Search::new(train, &design, &signs.collect::<Vec<_>>());
+    Turned::of(&search, Search::none_of(&design)?)
 }
 
 impl Decision {

@@ -183,7 +183,7 @@ impl Search<'_> {
         let pieces = effects.iter().flat_map(|of| of.pieces.iter().cloned());
         let members = pieces.map(|piece| Member::new(self.design, self.records, piece)).collect();
         let hypothesis = Hypothesis { members };
-        let start = Start::near(self.design, &hypothesis, [&none.fit, &near.fit]);
+        let start = Start::near(self.design, &hypothesis, [none.fit.known(), near.fit.known()]);
         let fit = fitted(self.design, hypothesis, start, steps)?;
         let cost: f64 = effects.iter().map(|of| of.cost).sum();
         let score = fit.log_evidence - none.fit.log_evidence - cost;

@@ -83,8 +83,15 @@ impl Windows {
                 let n = piece.shape.len();
                 let by = |coordinate, step| Move { coordinate, step, is_factor: false };
                 let mut moves = vec![by(n - 3, 0.5 * self.part), by(n - 2, 0.5 * self.part)];
-                moves.extend(self.whole.rise().map(|(k, most)| by(k, 0.5 * most)));
-                best.push(climbed(gains, &piece, &moves, below, &|_, shape| within(shape)));
+                let climb = |from: &PieceRows, moves: &[Move]| {
+                    climbed(gains, from, moves, below, &|_, shape| within(shape))
+                };
+                let at_once = climb(&piece, &moves);
+                if let Some((k, most)) = self.whole.rise() {
+                    moves.push(by(k, 0.5 * most));
+                    best.push(climb(&at_once, &moves));
+                }
+                best.push(at_once);
             }
         }
         best

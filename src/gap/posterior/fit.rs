@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::hypothesis::{Extra, Hypothesis};
 use super::reduced::{Reduced, variance};
 use super::sizes::{JointSizes, Size, Sizes, without_everyday};
-use super::start::Start;
+use super::start::{Known, Start};
 use crate::gap::design::{Cell, Design, Group, JointDesign, Packed, Set};
 
 /// The logs with a hypothesis.
@@ -103,6 +103,13 @@ fn fit_from(
 }
 
 impl Fit {
+    /// What another fit may begin with.
+    #[must_use]
+    pub(in crate::gap) fn known(&self) -> Known<'_> {
+        let Fit { hypothesis, sizes, amplitudes, .. } = self;
+        Known { hypothesis, sizes, amplitudes }
+    }
+
     /// Prior standard deviations and means of the effects' factors.
     fn prior(&self) -> (Vec<f64>, Vec<f64>) {
         let mut sds = Vec::new();

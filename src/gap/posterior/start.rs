@@ -1,9 +1,16 @@
 //! Where the search for sizes begins.
 
-use super::fit::Fit;
 use super::hypothesis::{Hypothesis, Member};
-use super::sizes::{Sizes, usual};
+use super::sizes::{Size, Sizes, usual};
 use crate::gap::design::Design;
+
+/// What is known of a fit.
+#[derive(Clone, Copy)]
+pub(in crate::gap) struct Known<'a> {
+    pub(super) hypothesis: &'a Hypothesis,
+    pub(super) sizes: &'a Sizes,
+    pub(super) amplitudes: &'a [Size],
+}
 
 /// The sizes from which a fit begins.
 pub(in crate::gap) struct Start {
@@ -25,11 +32,11 @@ impl Start {
 
     /// Near known fits: joints that a hypothesis reaches as one of these does keep the sizes of that.
     #[must_use]
-    pub(in crate::gap) fn near(design: &Design, of: &Hypothesis, known: [&Fit; 2]) -> Start {
+    pub(in crate::gap) fn near(design: &Design, of: &Hypothesis, known: [Known<'_>; 2]) -> Start {
         // Sizes that made up for an effect are too large with it, and would shrink slowly.
         let mut start = Start::at(usual(design));
         for joint in 0..design.joints.len() {
-            let same = known.iter().find(|fit| same_members(&fit.hypothesis, of, joint));
+            let same = known.iter().find(|fit| same_members(fit.hypothesis, of, joint));
             if let Some(fit) = same {
                 start.sizes[joint] = fit.sizes[joint].clone();
                 start.is_open[joint] = false;
@@ -37,7 +44,7 @@ impl Start {
         }
         let [_, near] = known;
         let members = near.hypothesis.members.iter().zip(&of.members);
-        let same = members.take_while(|(a, b)| a.is_same(b)).zip(&near.amplitudes);
+        let same = members.take_while(|(a, b)| a.is_same(b)).zip(near.amplitudes);
         start.amplitudes = same.map(|(_, amplitude)| amplitude.value).collect();
         start
     }
