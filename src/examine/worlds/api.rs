@@ -126,6 +126,6 @@ pub(super) fn single(joint: usize, value: f64) -> Row {
 }
 
 /// Rows by joint, of `n` joints.
-pub(super) fn by_joint(n: usize, rows: impl Iterator<Item = Row> + Clone) -> Vec<Vec<f64>> {
-    (0..n).map(|i| rows.clone().map(|row| row[i]).collect()).collect()
+pub(super) fn by_joint(n: usize, rows: &[Row]) -> Vec<Vec<f64>> {
+    (0..n).map(|i| rows.iter().map(|row| row[i]).collect()).collect()
 }

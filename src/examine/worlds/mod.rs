@@ -11,6 +11,7 @@ mod one;
 mod plain;
 mod program;
 mod random;
+mod table;
 mod three;
 mod two;
 

@@ -2,6 +2,7 @@
 
 use super::model::Row;
 use super::random::Rng;
+use super::table::{Table, quantised};
 use std::fmt::Write as _;
 
 /// A movement instruction: target \[rad\], speed of the tool \[m/s\], radius of the zone \[m\] (0: the
@@ -56,9 +57,8 @@ pub(super) struct Recorder {
 impl Recorder {
     /// The log of a run with angles, number of the move (0: none) and cycle, `tick` seconds apart.
     pub(super) fn csv(&self, rows: &[(Row, usize, usize)], tick: f64, rng: &mut Rng) -> String {
-        let names: Vec<String> = (1..=self.n).map(|i| format!("q{i}")).collect();
-        let cycle = if self.cycles { ",cycle" } else { "" };
-        let mut out = format!("t,{},cmd{cycle}\n", names.join(","));
+        let mut out =
+            Table::new(self.n, &["q"], if self.cycles { &["cmd", "cycle"] } else { &["cmd"] });
         let last = rows.len() - 1;
         for k in 0..(rows.len() as f64 * tick * self.rate).floor() as usize {
             let time = k as f64 / self.rate;
@@ -68,17 +68,16 @@ impl Recorder {
             let (at, share) = ((time / tick) as usize, (time / tick).fract());
             let ((q, command, cycle), (next, ..)) =
                 (&rows[at.min(last)], &rows[(at + 1).min(last)]);
-            let _ = write!(out, "{:.5}", self.start + time);
+            out.row(self.start + time, 5);
             for i in 0..self.n {
                 let angle = q[i] + share * (next[i] - q[i]) + self.noise * rng.normal();
-                let _ = write!(out, ",{:.6}", (angle / self.step).round() * self.step);
+                out.value(quantised(angle, self.step), 6);
             }
-            let _ = write!(out, ",{command}");
+            out.value(*command as f64, 0);
             if self.cycles {
-                let _ = write!(out, ",{cycle}");
+                out.value(*cycle as f64, 0);
             }
-            out.push('\n');
         }
-        out
+        out.finish()
     }
 }

@@ -2,11 +2,11 @@
 //! error is, and what the truth says of both.
 
 use super::arm::Arm;
-use super::case::Rotors;
 use super::dynamics::{down, model, pose, torques};
 use super::everyday::Day;
 use super::faults::Fault;
 use super::motion::{STEP, Track};
+use super::plan::Rotors;
 use super::plant::{Robot, Run, Sample, Tables};
 use crate::examine::worlds::api::{HeldOut, by_joint, held_out, minus, nats, rms, single};
 use crate::examine::worlds::model::{MAX, PARAMETERS, Row, Spread, one_off};
@@ -119,7 +119,7 @@ impl Bench<'_> {
         let mut out = Vec::new();
         let mut add = |torque: &dyn Fn(&Sample) -> Row| {
             let column: Vec<Row> = rows.iter().map(torque).collect();
-            out.push(by_joint(arm.count(), column.iter().copied()));
+            out.push(by_joint(arm.count(), &column));
         };
         let known = if baseline { KNOWN } else { 1.0 };
         let friction = if baseline { DAYS.min(spread.friction) } else { spread.friction };

@@ -19,11 +19,9 @@ const JERK_SHARE: f64 = 0.4;
 /// What the controller makes of a program, over what it should.
 #[derive(Clone, Debug)]
 pub(super) struct Tuning {
-    /// Factor of speeds.
     pub(super) speed: f64,
     /// Most speed of the tool \[m/s\].
     pub(super) ceiling: f64,
-    /// Factor of accelerations, by axis.
     pub(super) acceleration: Row,
     /// Factor of the radius of corners.
     pub(super) zone: f64,
@@ -42,7 +40,6 @@ pub(super) struct Tuning {
 pub(super) struct Motion {
     /// Angles \[rad\], number of the move, from 1 (0 in waits), and of the cycle, from 1, every [`TICK`].
     pub(super) rows: Vec<(Row, usize, usize)>,
-    /// Ticks at which cycles start.
     pub(super) starts: Vec<usize>,
     /// Duration of each move of the first cycle \[s\].
     pub(super) durations: Vec<f64>,

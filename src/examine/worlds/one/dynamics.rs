@@ -11,9 +11,7 @@ use crate::examine::worlds::model::{Body, M3, MAX, Row, V3};
 pub(super) struct Pose {
     /// Origins of the joints \[m\].
     pub(super) origin: [V3; MAX],
-    /// Axes of the joints.
     pub(super) axis: [V3; MAX],
-    /// Orientations of the frames.
     pub(super) turn: [M3; MAX],
     /// The flange \[m\].
     pub(super) flange: V3,

@@ -109,18 +109,15 @@ impl Smooth {
 #[derive(Clone, Debug)]
 pub(super) struct Joint {
     smooth: Smooth,
-    /// Dynamic friction.
     pub(super) bank: Bank,
     /// Bend of viscous friction at the largest speed.
     pub(super) bent: f64,
     /// Largest speed \[rad/s\].
     pub(super) top: f64,
-    /// Asymmetry of Coulomb friction.
     pub(super) asymmetry: f64,
     uneven: [(f64, f64, f64); 3],
     /// Natural frequency \[rad/s\] of the filter of the torque.
     pub(super) omega: f64,
-    /// Damping of it.
     pub(super) zeta: f64,
     /// Constant offset \[Nm\].
     pub(super) offset: f64,
@@ -131,7 +128,6 @@ pub(super) struct Joint {
 /// Everyday deviations of a robot.
 #[derive(Clone, Debug)]
 pub(super) struct Everyday {
-    /// By joint.
     pub(super) joints: Vec<Joint>,
     /// Correlation time of the noise \[s\].
     pub(super) noise_time: f64,
@@ -144,9 +140,7 @@ pub(super) struct Everyday {
 /// What differs from day to day.
 #[derive(Clone, Debug)]
 pub(super) struct Day {
-    /// Factor of Coulomb friction.
     pub(super) coulomb: Row,
-    /// Factor of viscous friction.
     pub(super) viscous: Row,
     /// Key of the changes from cycle to cycle.
     pub(super) key: u64,

@@ -22,7 +22,6 @@ pub(super) struct Bank {
     pub(super) rise: f64,
     /// Stribeck speed \[rad/s\].
     pub(super) speed: f64,
-    /// Power of the Stribeck curve.
     pub(super) power: f64,
 }
 

@@ -125,7 +125,6 @@ impl<F: Fn(&View) -> f64> Law for Static<F> {
 pub(super) struct Oscillator<F> {
     /// Natural frequency \[rad/s\].
     pub(super) omega: f64,
-    /// Damping.
     pub(super) zeta: f64,
     /// What drives it \[Nm\].
     pub(super) drive: F,
@@ -148,7 +147,6 @@ impl<F: Fn(&View) -> f64> Law for Oscillator<F> {
 pub(super) struct Memory<U, F> {
     /// Time constant \[s\].
     pub(super) lag: f64,
-    /// What is followed.
     pub(super) input: U,
     /// Torque \[Nm\] from the view and the follower.
     pub(super) output: F,

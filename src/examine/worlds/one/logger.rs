@@ -5,8 +5,8 @@ use super::everyday::Everyday;
 use super::plant::Sample;
 use crate::examine::worlds::model::{MAX, Row};
 use crate::examine::worlds::random::Rng;
+use crate::examine::worlds::table::{Table, quantised};
 use std::f64::consts::TAU;
-use std::fmt::Write as _;
 
 /// Sampling rates \[Hz\].
 pub(super) const RATES: [f64; 5] = [50.0, 100.0, 125.0, 250.0, 500.0];
@@ -90,60 +90,38 @@ impl Recorder {
         powers: Option<&[f64]>,
         rng: &mut Rng,
     ) -> String {
-        let count = everyday.joints.len();
-        let mut out = String::with_capacity(samples.len() * (count * 24 + 16));
-        self.head(&mut out, count, powers.is_some());
+        let groups: &[&str] = if self.speeds { &["q", "qd", "tau"] } else { &["q", "tau"] };
+        let single: &[&str] = if powers.is_some() { &["power"] } else { &[] };
+        let mut out = Table::new(everyday.joints.len(), groups, single);
         let keep = (-1.0 / (self.rate * everyday.noise_time)).exp();
         let fresh = (1.0 - keep * keep).sqrt();
         let mut noise = [0.0; MAX];
         let [dt, dq, dtau] = self.decimals;
         for (k, (stamp, sample)) in stamps.iter().zip(samples).enumerate() {
-            let _ = write!(out, "{stamp:.dt$}");
-            for j in 0..count {
-                let step = self.angle_step[j];
-                let _ = write!(out, ",{:.dq$}", (sample.q[j] / step).round() * step);
+            out.row(*stamp, dt);
+            for (q, step) in sample.q.iter().zip(self.angle_step).take(everyday.joints.len()) {
+                out.value(quantised(*q, step), dq);
             }
             if self.speeds {
-                for j in 0..count {
-                    let _ = write!(
-                        out,
-                        ",{:.dq$}",
-                        sample.v[j] + self.angle_step[j] * 20.0 * rng.spread(1.0)
-                    );
+                for (v, step) in sample.v.iter().zip(self.angle_step).take(everyday.joints.len()) {
+                    out.value(v + step * rng.spread(20.0), dq);
                 }
             }
-            for j in 0..count {
-                let deviation = everyday.joints[j].noise;
+            for (j, joint) in everyday.joints.iter().enumerate() {
                 if k == 0 {
                     noise[j] = rng.spread(1.0);
                 }
                 noise[j] = keep * noise[j] + fresh * rng.spread(1.0);
-                let step = self.torque_step[j];
-                let tau = sample.tau[j] + deviation * noise[j];
-                let _ = write!(out, ",{:.dtau$}", (tau / step).round() * step);
+                out.value(
+                    quantised(sample.tau[j] + joint.noise * noise[j], self.torque_step[j]),
+                    dtau,
+                );
             }
-            if let Some(power) = powers.and_then(|p| p.get(k)) {
-                let _ = write!(out, ",{power:.1}");
+            if let Some(powers) = powers {
+                out.value(powers[k], 1);
             }
-            out.push('\n');
         }
-        out
-    }
-
-    /// The line of the columns' names.
-    fn head(&self, out: &mut String, count: usize, power: bool) {
-        out.push('t');
-        let mut columns = |name: &str| {
-            for j in 1..=count {
-                let _ = write!(out, ",{name}{j}");
-            }
-        };
-        columns("q");
-        if self.speeds {
-            columns("qd");
-        }
-        columns("tau");
-        out.push_str(if power { ",power\n" } else { "\n" });
+        out.finish()
     }
 
     /// Deviation \[Nm\] of one logged torque: noise and quantisation.

@@ -32,15 +32,12 @@ const LONG_REST: (f64, f64) = (2.0, 5.0);
 /// Ways to move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Style {
-    /// Random Fourier series.
     Fourier,
     /// Moves with trapezoidal speed, and dwells.
     Trapezoid,
     /// Moves with S-curves, and dwells.
     Curve,
-    /// Chirps.
     Chirp,
-    /// Slow sweeps.
     Sweep,
 }
 
@@ -58,13 +55,10 @@ pub(super) struct Path {
 /// A motion that is repeated.
 #[derive(Clone, Debug)]
 pub(super) struct Track {
-    /// One period.
     pub(super) cycle: Path,
     /// The first period, where it starts from rest.
     pub(super) lead: Option<Path>,
-    /// Fine steps of a period.
     pub(super) steps: usize,
-    /// Repetitions.
     pub(super) cycles: usize,
 }
 

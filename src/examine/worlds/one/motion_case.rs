@@ -1,8 +1,8 @@
 //! Cases of motion: a RAPID program, and logs of its runs without torques.
 
 use super::arm::{Arm, factor};
-use super::case::Plan;
 use super::controller::{Motion, TICK, Tuning, run};
+use super::plan::Plan;
 use crate::examine::worlds::api::{self, Case, Kind, MODULE, Truth, program_options};
 use crate::examine::worlds::model::{MAX, Row};
 use crate::examine::worlds::program::{Move, Recorder, module};

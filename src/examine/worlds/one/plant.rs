@@ -27,7 +27,6 @@ pub(super) struct Sample {
     pub(super) tau: Row,
     /// Torques of the motors \[Nm\].
     pub(super) motor: Row,
-    /// Directions of friction.
     pub(super) sign: Row,
 }
 
@@ -40,11 +39,8 @@ pub(super) struct Table {
 
 /// A robot: its real parameters, everyday deviations and levels.
 pub(super) struct Robot<'a> {
-    /// Real parameters.
     pub(super) arm: &'a Arm,
-    /// Everyday deviations.
     pub(super) everyday: &'a Everyday,
-    /// Levels of the motion.
     pub(super) level: &'a Level,
     /// Rotor inertia \[kg m²\] times the acceleration of this is taken off the reported torques.
     pub(super) removed: Row,

@@ -4,7 +4,7 @@
 use super::arm::factor;
 use super::bench::Bench;
 use super::plant::Sample;
-use super::torque_case::Scene;
+use super::scene::Scene;
 use crate::examine::worlds::api::{self, Kind, Truth};
 use crate::examine::worlds::model::{MAX, Row};
 use crate::examine::worlds::random::Rng;

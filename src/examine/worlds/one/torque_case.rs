@@ -2,13 +2,14 @@
 
 use super::arm::{Arm, neat, real};
 use super::bench::{Bench, Stage};
-use super::case::{Plan, Rotors};
-use super::everyday::{Day, Everyday, Level};
+use super::everyday::{Everyday, Level};
 use super::faults::catalogue::{self, Choice};
 use super::faults::{Context, Fault};
 use super::logger::Recorder;
 use super::motion::{STEP, Style, Track, style, track};
-use super::plant::{Robot, Run, Sample, Tables, level, tables};
+use super::plan::{Plan, Rotors};
+use super::plant::{Robot, Run, Sample, level, tables};
+use super::scene::{HELD, Log, Scene};
 use super::{power_case, truth};
 use crate::examine::worlds::api::{Case, Kind, options};
 use crate::examine::worlds::model::MAX;
@@ -43,32 +44,6 @@ const CORRECTION: (f64, f64) = (0.002, 200.0);
 const NEAR: f64 = 1.2;
 /// Corrections of a size: builders are nearly linear.
 const CORRECTIONS: usize = 2;
-
-/// Name of the held-out log.
-const HELD: &str = "heldout.csv";
-
-/// A log to be made.
-pub(super) struct Log {
-    /// File name.
-    pub(super) name: String,
-    /// Number of its motion.
-    pub(super) motion: usize,
-    /// Whether the fault is there.
-    pub(super) faulty: bool,
-}
-
-/// What all logs of a case share.
-pub(super) struct Scene<'a> {
-    pub(super) plan: &'a Plan,
-    /// Motions and their tables.
-    pub(super) stages: Vec<(Tables, Track)>,
-    /// Days, one for each log.
-    pub(super) days: Vec<Day>,
-    /// Logs.
-    pub(super) logs: Vec<Log>,
-    /// Recorder of this case.
-    pub(super) recorder: Recorder,
-}
 
 /// The logs: new ones, the held-out one, and those from before.
 fn logs(plan: &Plan, rng: &mut Rng) -> (Vec<Log>, usize) {
@@ -310,18 +285,5 @@ fn finish(scene: &Scene, bench: &Bench, mut faults: Vec<Fault>) -> Case {
         place,
         lines: Vec::new(),
         heldout,
-    }
-}
-
-impl Scene<'_> {
-    /// The held-out log; those before it are present ones.
-    pub(super) fn held(&self) -> usize {
-        self.logs.iter().position(|log| log.name == HELD).unwrap_or(0)
-    }
-
-    /// The motion and day of a log.
-    pub(super) fn stage(&self, log: usize) -> Stage<'_> {
-        let (tables, track) = &self.stages[self.logs[log].motion];
-        Stage { track, tables, day: &self.days[log] }
     }
 }

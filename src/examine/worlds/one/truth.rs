@@ -4,7 +4,7 @@
 use super::bench::{Bench, ROWS};
 use super::faults::Fault;
 use super::plant::Sample;
-use super::torque_case::Scene;
+use super::scene::Scene;
 use crate::examine::worlds::api::{HeldOut, largest};
 use crate::examine::worlds::model::{MAX, Row};
 

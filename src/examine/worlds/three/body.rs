@@ -39,9 +39,7 @@ pub(super) struct SoftLaw {
     pub(super) gap: f64,
     /// Inertia of the link about the joint \[kg m²\].
     pub(super) inertia: f64,
-    /// Damping ratio.
     pub(super) damping: f64,
-    /// Form.
     pub(super) form: SoftForm,
 }
 
@@ -125,7 +123,6 @@ fn push_shape(x: f64, lopsided: bool) -> f64 {
 pub(super) struct Bodies<'a> {
     arm: &'a Arm,
     laws: &'a [BodyLaw],
-    /// The links with all lumps.
     links: Vec<Body>,
 }
 

@@ -27,7 +27,6 @@ struct Skeleton {
     upper: Row,
     middle: Row,
     span: Row,
-    /// Shares of the arm's mass.
     shares: Row,
     /// Joints from the base that count as main axes.
     main: usize,

@@ -1,12 +1,9 @@
-//! Random faults of bodies, springs, gravity, contact, angles, compliance; and faults outside.
+//! Random faults of bodies, springs, gravity, contact, angles and compliance.
 
 use super::body::{BodyLaw, SoftForm, SoftLaw};
-use super::draw_friction::window;
 use super::fault::{Act, Fault, Place, some_joints};
-use super::friction::{FrictionForm, FrictionLaw};
+use super::friction::window;
 use super::link::{LinkForm, LinkLaw};
-use super::report::{ReportForm, ReportLaw};
-use super::signal::{SignalForm, SignalLaw};
 use super::spatial::inertia_of;
 use crate::examine::worlds::model::{Body, M3, V3};
 use crate::examine::worlds::random::Rng;
@@ -24,7 +21,6 @@ pub(super) fn draw(id: &'static str, place: &Place, rng: &mut Rng) -> Option<Fau
         "elasticity" => Some(elasticity(place, rng)),
         "contact" => Some(contact(place, rng)),
         "link_parameters" => Some(lumps(place, rng)),
-        "outside" => Some(outside(place, rng)),
         _ => None,
     }
 }
@@ -37,7 +33,7 @@ fn brick(mass: f64, com: V3, size: f64, rng: &mut Rng) -> Body {
 }
 
 /// A body at the flange, beyond the last link's centre.
-fn gripped(place: &Place, share: f64, rng: &mut Rng) -> Body {
+pub(super) fn gripped(place: &Place, share: f64, rng: &mut Rng) -> Body {
     let mass = share * place.arm.payload;
     let size = 0.09 * place.arm.payload.cbrt();
     let own = place.arm.bodies.last().map_or_else(V3::zeros, |body| body.com);
@@ -235,93 +231,4 @@ fn lumps(place: &Place, rng: &mut Rng) -> Fault {
     } else {
         fault
     }
-}
-
-/// Faults that are in no library.
-fn outside(place: &Place, rng: &mut Rng) -> Fault {
-    let arm = place.arm;
-    let joint = rng.below(arm.axes());
-    let others: Vec<usize> = (0..arm.axes()).filter(|k| *k != joint).collect();
-    let other = rng.pick(&others);
-    let (coulomb, usual) = (arm.coulomb[joint], arm.usual[joint]);
-    let friction = |size: f64, form: FrictionForm| {
-        Act::Friction(joint, FrictionLaw { sizes: [size, 0.0], form })
-    };
-    let report =
-        |size: f64, form: ReportForm| Act::Report(joint, ReportLaw { size, second: 0.0, form });
-    let phase = arm.middle[other] + 0.5 * arm.span[other] * rng.between(-1.0, 1.0);
-    let one = vec![joint];
-    let (name, joints, act, bounds) = match rng.below(12) {
-        0 => {
-            let act = friction(0.8 * coulomb, FrictionForm::OtherAngle { other, phase });
-            ("friction over another joint's angle", one, act, [0.1, 6.0])
-        }
-        1 => {
-            ("clipped output", one, report(1.0, ReportForm::Cut { level: 2.0 * usual }), [0.5, 4.0])
-        }
-        2 => {
-            let form = ReportForm::Rattle { centre: arm.middle[joint], seed: rng.bits() };
-            ("rattle over a part of the angles", one, report(0.15 * usual, form), [0.2, 6.0])
-        }
-        3 => {
-            let form = SignalForm::Mode {
-                frequency: rng.between(4.0, 14.0),
-                damping: rng.between(0.03, 0.1),
-            };
-            let law = SignalLaw { size: 0.2, only: Some(joint), form };
-            ("flexible mode of the structure", one, Act::Signal(law), [0.1, 8.0])
-        }
-        4 => {
-            let link = rng.whole(1, 3);
-            let own = arm.bodies.get(link).map_or_else(V3::zeros, |body| body.com);
-            let rail =
-                V3::from_fn(|_, _| rng.spread(1.0)).try_normalize(1e-6).unwrap_or_else(V3::x);
-            let rail = rail * (0.3 * arm.payload.powf(0.27));
-            let law = BodyLaw::Sliding { link, mass: 0.3 * arm.payload, from: own, rail };
-            ("mass that slides", vec![link], Act::Body(law), [0.1, 8.0])
-        }
-        5 => {
-            let form =
-                FrictionForm::Switching { slot: rng.log_between(0.3, 3.0), seed: rng.bits() };
-            ("friction that switches at random", one, friction(0.8 * coulomb, form), [0.1, 6.0])
-        }
-        6 => {
-            let form = FrictionForm::CubedAcceleration { reference: 0.5 * arm.acceleration[joint] };
-            ("torque of the acceleration cubed", one, friction(0.4 * usual, form), [0.1, 4.0])
-        }
-        7 => {
-            let [from, to] = window(place, rng);
-            let body = gripped(place, 0.3, rng);
-            (
-                "payload in a part of the period",
-                Vec::new(),
-                Act::Body(BodyLaw::Gripped { body, from, to }),
-                [0.05, 4.0],
-            )
-        }
-        8 => {
-            let act = Act::Coupling { from: 1, into: 2, ratio: -rng.between(0.3, 1.0) };
-            ("parallelogram: motor 3 turns with axis 2", vec![1, 2], act, [0.2, 2.0])
-        }
-        9 => {
-            // Hollow wrists: the tube of axis 5 turns with axis 4, and the drive does not know it.
-            let act = Act::Coupling { from: 3, into: 4, ratio: rng.sign() * rng.between(0.3, 1.0) };
-            ("motor 5 turns with axis 4", vec![3, 4], act, [0.2, 2.0])
-        }
-        10 => {
-            let reference = 0.3 * (arm.speed[joint] * arm.speed[other]).sqrt();
-            let form = FrictionForm::Gyroscope { other, reference };
-            ("gyroscopic torque of a spinning tool", one, friction(0.1 * usual, form), [0.1, 10.0])
-        }
-        _ => {
-            let ratio = usual / arm.usual[other].max(1e-6);
-            let act = report(0.1 * ratio, ReportForm::Crosstalk { other });
-            ("crosstalk of current sensors", one, act, [0.1, 6.0])
-        }
-    };
-    let mut fault = Fault::new("outside", name, &joints, vec![act], bounds);
-    if let Some(Act::Body(BodyLaw::Gripped { from, to, .. })) = fault.acts.first() {
-        fault.window = Some([*from, *to]);
-    }
-    fault
 }

@@ -25,26 +25,18 @@ pub(super) enum Rotors {
 /// A robot with its model.
 #[derive(Clone, Debug)]
 pub(super) struct World {
-    /// The model.
     pub(super) nominal: Arm,
-    /// The robot.
     pub(super) real: Arm,
-    /// Its habits.
     pub(super) everyday: Everyday,
-    /// Rotors in model and logs.
     pub(super) rotors: Rotors,
 }
 
 /// A recording to simulate.
 #[derive(Clone, Debug)]
 pub(super) struct Run {
-    /// Motion of one period.
     pub(super) track: Track,
-    /// Another first period.
     pub(super) entry: Option<Track>,
-    /// Periods.
     pub(super) cycles: usize,
-    /// The day.
     pub(super) day: Day,
     /// Seed of what differs between cycles.
     pub(super) stream: Rng,
@@ -155,9 +147,7 @@ fn prepare(world: &World, track: &Track, stages: &Stages) -> Vec<Prepared> {
 
 /// Memories of a log.
 struct Memories {
-    /// By joint: bristle, gear temperature.
     gear: [[f64; 2]; MAX],
-    /// Heat of the windings.
     heat: Row,
     /// By act of the faults, all in a row.
     acts: Vec<Memory>,
@@ -238,7 +228,7 @@ fn step(
         for act in &fault.acts {
             let Some(memory) = memory.next() else { break };
             if let Act::Friction(i, law) = act {
-                let torque = law.torque(*i, now, memory);
+                let torque = law.at(*i, now, 0.0, memory);
                 torques[*i] += if on { torque } else { 0.0 };
             }
         }
@@ -251,7 +241,7 @@ fn step(
     for (act, memory) in stages.faults.iter().flat_map(|fault| &fault.acts).zip(&mut memories.acts)
     {
         if let Act::Report(i, law) = act {
-            torques[*i] = law.reported(torques[*i], *i, now, memory);
+            torques[*i] = law.at(*i, now, torques[*i], memory);
         }
     }
     stages.gears.joints(&torques)

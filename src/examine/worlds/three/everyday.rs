@@ -64,18 +64,15 @@ pub(super) struct Habit {
     pub(super) quantum: f64,
     /// Quantum of the logged angle \[rad\].
     pub(super) step: f64,
-    /// The motor.
     pub(super) motor: Motor,
 }
 
 /// Habits of a robot and of its logger.
 #[derive(Clone, Debug)]
 pub(super) struct Everyday {
-    /// By joint.
     pub(super) joints: Vec<Habit>,
     /// Lag of the torque path \[s\] and its order.
     pub(super) lag: f64,
-    /// Order of that filter.
     pub(super) order: usize,
     /// How much later than the position the torque is sampled \[s\].
     pub(super) late: f64,
@@ -88,7 +85,6 @@ pub(super) struct Everyday {
 /// What differs from day to day.
 #[derive(Clone, Debug)]
 pub(super) struct Day {
-    /// Factor on friction, by joint.
     pub(super) friction: Row,
     /// Gear temperature at the start of the log, by joint: about 1.
     pub(super) warmth: Row,
@@ -112,11 +108,8 @@ impl Day {
 pub(super) struct Dry {
     /// Part of the sign: the torque at full sign.
     pub(super) level: f64,
-    /// The sign's smooth part.
     pub(super) smooth: f64,
-    /// Viscous part.
     pub(super) viscous: f64,
-    /// Part of the load.
     pub(super) load: f64,
 }
 
@@ -156,7 +149,7 @@ fn habit(arm: &Arm, i: usize, common: f64, rng: &mut Rng) -> Habit {
     let turn = std::f64::consts::TAU / arm.ratio[i].max(1.0);
     let noise = usual * rng.log_between(0.002, 0.015);
     let shared = rng.between(0.3, 0.8);
-    let bits = rng.whole(13, 19) as i32;
+    let bits = rng.whole(13, 19);
     Habit {
         neurons,
         other: others.get(rng.below(others.len())).copied().unwrap_or(i),
@@ -183,11 +176,11 @@ fn habit(arm: &Arm, i: usize, common: f64, rng: &mut Rng) -> Habit {
         white: noise * (1.0 - shared),
         coloured: noise * shared,
         quantum: if rng.chance(0.7) {
-            arm.torque[i] / f64::powi(2.0, rng.whole(10, 14) as i32)
+            arm.torque[i] / f64::exp2(rng.whole(10, 14) as f64)
         } else {
             0.0
         },
-        step: if rng.chance(0.7) { turn / f64::powi(2.0, bits) } else { 0.0 },
+        step: if rng.chance(0.7) { turn / f64::exp2(bits as f64) } else { 0.0 },
         motor: Motor::new(arm, i, rng),
     }
 }

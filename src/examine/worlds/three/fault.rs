@@ -1,33 +1,28 @@
-//! A fault: what acts, where and when; and the list of all faults.
+//! A fault: what acts, where and when.
 
 use super::arm::Arm;
 use super::body::BodyLaw;
-use super::friction::FrictionLaw;
+use super::law::MotorLaw;
 use super::link::LinkLaw;
-use super::report::ReportLaw;
 use super::signal::SignalLaw;
-use super::{draw_body, draw_drive, draw_friction};
 use crate::examine::worlds::api::Truth;
 use crate::examine::worlds::random::Rng;
 
 /// One law of a fault at its place (joints from 0).
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub(super) enum Act {
     /// Bodies, gravity, contact, angles, compliance.
     Body(BodyLaw),
-    /// Between the links.
     Link(usize, LinkLaw),
     /// In a motor's coordinates.
-    Friction(usize, FrictionLaw),
+    Friction(usize, MotorLaw),
     /// In what the drive reports.
-    Report(usize, ReportLaw),
+    Report(usize, MotorLaw),
     /// In the signal path.
     Signal(SignalLaw),
     /// Motor `into` also turns with joint `from`.
     Coupling {
-        /// The joint.
         from: usize,
-        /// The motor.
         into: usize,
         /// Turns of the motor per turn of the joint, both behind the gear.
         ratio: f64,
@@ -35,17 +30,14 @@ pub(super) enum Act {
 }
 
 /// A fault of torques.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub(super) struct Fault {
-    /// Effect id, or `outside`.
     pub(super) id: &'static str,
-    /// Functional form.
     pub(super) form: &'static str,
     /// Joints from 0; empty for the whole arm.
     pub(super) joints: Vec<usize>,
     /// Window within each period \[s\].
     pub(super) window: Option<[f64; 2]>,
-    /// Its laws.
     pub(super) acts: Vec<Act>,
     /// Smallest and largest factor on its first size that is plausible.
     pub(super) bounds: [f64; 2],
@@ -56,7 +48,6 @@ pub(super) struct Fault {
 /// What a draw needs to know of a case.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place<'a> {
-    /// The nominal arm.
     pub(super) arm: &'a Arm,
     /// Duration of a period \[s\].
     pub(super) period: f64,
@@ -65,49 +56,6 @@ pub(super) struct Place<'a> {
     /// Sampling rate \[Hz\].
     pub(super) rate: f64,
 }
-
-/// All torque effects but `link_parameters`, which has its own kind of case.
-pub(super) const EFFECTS: [&str; 29] = [
-    "payload",
-    "rotor_inertia",
-    "gravity_spring",
-    "base_tilt",
-    "encoder_offset",
-    "cable",
-    "friction_level",
-    "torque_offset",
-    "stribeck",
-    "nonlinear_viscous",
-    "viscous_asymmetry",
-    "load_friction",
-    "gear_efficiency",
-    "warm_up",
-    "position_friction",
-    "presliding",
-    "backlash",
-    "elasticity",
-    "ripple",
-    "wrist_coupling",
-    "brake_drag",
-    "torque_constant",
-    "current_saturation",
-    "flux_weakening",
-    "time_delay",
-    "filter_lag",
-    "current_sign",
-    "contact",
-    "apparent_torque",
-];
-
-/// Faults for which torques must be the motors' and the model must have rotors.
-pub(super) const MOTOR_EFFECTS: [&str; 6] = [
-    "rotor_inertia",
-    "wrist_coupling",
-    "torque_constant",
-    "current_saturation",
-    "flux_weakening",
-    "current_sign",
-];
 
 impl Fault {
     /// A fault of a list of laws.
@@ -135,13 +83,6 @@ impl Fault {
         self
     }
 
-    /// The fault of an effect; none where the arm has no place for it.
-    pub(super) fn draw(id: &'static str, place: &Place, rng: &mut Rng) -> Option<Self> {
-        draw_friction::draw(id, place, rng)
-            .or_else(|| draw_drive::draw(id, place, rng))
-            .or_else(|| draw_body::draw(id, place, rng))
-    }
-
     /// The fault, `factor` times as large.
     pub(super) fn scaled(&self, factor: f64) -> Self {
         let mut fault = self.clone();
@@ -149,10 +90,8 @@ impl Fault {
             match act {
                 Act::Body(law) => *law = law.scaled(factor),
                 Act::Link(_, law) => law.stiffness *= factor,
-                Act::Friction(_, law) => law.sizes = law.sizes.map(|size| size * factor),
-                Act::Report(_, law) => {
-                    law.size *= factor;
-                    law.second *= factor;
+                Act::Friction(_, law) | Act::Report(_, law) => {
+                    law.sizes = law.sizes.map(|size| size * factor);
                 }
                 Act::Signal(law) => law.size *= factor,
                 Act::Coupling { ratio, .. } => *ratio *= factor,
@@ -194,8 +133,9 @@ impl Fault {
             let (joint, list) = match act {
                 Act::Body(law) => law.parameters(),
                 Act::Link(joint, law) => (Some(*joint), law.parameters()),
-                Act::Friction(joint, law) => (Some(*joint), law.parameters()),
-                Act::Report(joint, law) => (Some(*joint), law.parameters()),
+                Act::Friction(joint, law) | Act::Report(joint, law) => {
+                    (Some(*joint), law.parameters())
+                }
                 Act::Signal(law) => (None, law.parameters()),
                 Act::Coupling { ratio, .. } => (None, vec![("coupling", *ratio, coupled)]),
             };

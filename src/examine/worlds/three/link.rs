@@ -9,7 +9,6 @@ pub(super) struct LinkLaw {
     pub(super) stiffness: f64,
     /// Angle without torque \[rad\].
     pub(super) centre: f64,
-    /// Form.
     pub(super) form: LinkForm,
 }
 

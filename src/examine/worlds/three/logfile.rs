@@ -4,18 +4,15 @@ use super::drive::{Run, World};
 use super::motion::STEP;
 use crate::examine::worlds::model::{MAX, Row};
 use crate::examine::worlds::random::Rng;
-use std::fmt::Write;
+use crate::examine::worlds::table::{Table, quantised};
 
 /// A logger.
 #[derive(Clone, Debug)]
 pub(super) struct Recorder {
-    /// Rows per second.
     pub(super) rate: f64,
-    /// Decimals of times, angles, torques.
     pub(super) digits: [usize; 3],
     /// Time of the first row \[s\].
     pub(super) start: f64,
-    /// Whether it also writes rates.
     pub(super) rates: bool,
     /// Share of the rows that are lost.
     pub(super) lost: f64,
@@ -39,11 +36,6 @@ impl Recorder {
     }
 }
 
-/// A value in steps of a quantum; 0 for none.
-fn quantised(value: f64, quantum: f64) -> f64 {
-    if quantum > 0.0 { (value / quantum).round() * quantum } else { value }
-}
-
 /// A series at a time \[s\], linear; held at its ends.
 pub(super) fn sampled(series: &[Row], time: f64) -> Row {
     let last = series.len().saturating_sub(1);
@@ -57,19 +49,6 @@ pub(super) fn sampled(series: &[Row], time: f64) -> Row {
         }
     }
     out
-}
-
-/// The header of a log.
-fn header(axes: usize, rates: bool, power: bool) -> String {
-    let mut names = vec!["t".to_owned()];
-    let groups: &[&str] = if rates { &["q", "qd", "tau"] } else { &["q", "tau"] };
-    for group in groups {
-        names.extend((1..=axes).map(|i| format!("{group}{i}")));
-    }
-    if power {
-        names.push("power".to_owned());
-    }
-    names.join(",") + "\n"
 }
 
 /// Decimals of torques that keep small wrists visible: five significant ones of the usual torque.
@@ -91,7 +70,9 @@ pub(super) fn csv(
     rng: &mut Rng,
 ) -> String {
     let count = world.nominal.axes();
-    let mut out = header(count, logger.rates, !powers.is_empty());
+    let groups: &[&str] = if logger.rates { &["q", "qd", "tau"] } else { &["q", "tau"] };
+    let single: &[&str] = if powers.is_empty() { &[] } else { &["power"] };
+    let mut out = Table::new(count, groups, single);
     let dt = 1.0 / logger.rate;
     let length = series.len() as f64 * STEP;
     let rows = (length * logger.rate + 1e-6).floor() as usize;
@@ -118,9 +99,9 @@ pub(super) fn csv(
             Some(entry) if time < period - STEP => entry,
             _ => &run.track,
         };
-        let _ = write!(out, "{stamp:.time_digits$}");
+        out.row(stamp, time_digits);
         for (angle, habit) in track.angles(time).iter().zip(&world.everyday.joints) {
-            let _ = write!(out, ",{:.angle_digits$}", quantised(*angle, habit.step));
+            out.value(quantised(*angle, habit.step), angle_digits);
         }
         if logger.rates {
             // Rates from the angles of one servo cycle on both sides, as drives compute them.
@@ -128,20 +109,17 @@ pub(super) fn csv(
             let (before, after) = (track.angles(from), track.angles(time + STEP));
             for (i, habit) in world.everyday.joints.iter().enumerate() {
                 let rate = (after[i] - before[i]) / (time + STEP - from);
-                let _ = write!(out, ",{:.5}", rate + habit.step * 20.0 * rng.normal());
+                out.value(rate + habit.step * 20.0 * rng.normal(), 5);
             }
         }
         let torques = sampled(series, time + world.everyday.late);
         for (i, habit) in world.everyday.joints.iter().enumerate() {
-            let noisy = torques[i] + white.get(i).copied().unwrap_or(0.0) + coloured[i];
-            let digits = torque_digits.get(i).copied().unwrap_or(digits);
-            let _ = write!(out, ",{:.digits$}", quantised(noisy, habit.quantum));
+            let noisy = torques[i] + white[i] + coloured[i];
+            out.value(quantised(noisy, habit.quantum), torque_digits[i]);
         }
         if !powers.is_empty() {
-            let at = ((time / STEP).round() as usize).min(powers.len() - 1);
-            let _ = write!(out, ",{:.1}", powers.get(at).copied().unwrap_or(0.0));
+            out.value(powers[((time / STEP).round() as usize).min(powers.len() - 1)], 1);
         }
-        out.push('\n');
     }
-    out
+    out.finish()
 }

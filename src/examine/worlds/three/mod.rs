@@ -6,10 +6,10 @@
 mod arm;
 mod body;
 mod build;
+mod catalogue;
 mod draw_body;
-mod draw_drive;
-mod draw_friction;
 mod drive;
+mod drive_faults;
 mod everyday;
 mod fault;
 mod friction;
@@ -19,12 +19,12 @@ mod logfile;
 mod motion;
 mod motion_case;
 mod motor;
+mod outside;
 mod planner;
 mod power;
 mod power_case;
 mod profile;
 mod program;
-mod report;
 mod signal;
 mod spatial;
 
@@ -44,10 +44,10 @@ pub(super) fn case(seed: u64, number: usize) -> Case {
 
 /// A nominal robot and its torques.
 #[cfg(feature = "internals")]
-pub(super) fn plain(seed: u64) -> super::Plain {
+pub(super) fn plain(seed: u64) -> super::plain::Plain {
     let rng = &mut super::random::Rng::stream(seed, 0, "plain");
     let arm = build::nominal(rng, 0, false);
-    super::Plain::new(&arm.sheet(), rng, |[q, v, a], rotors| {
+    super::plain::Plain::new(&arm.sheet(), rng, |[q, v, a], rotors| {
         let at = spatial::Point { q: *q, v: *v, a: *a };
         arm.model(&at, rotors == super::plain::Rotors::With)
     })

@@ -13,22 +13,18 @@ pub(super) const STEP: f64 = 0.002;
 /// One period of a motion on the grid.
 #[derive(Clone, Debug)]
 pub(super) struct Track {
-    /// States, [`STEP`] apart.
     pub(super) points: Vec<Point>,
 }
 
 impl Track {
     /// The state at a time \[s\] from its start, cyclic: Taylor series about the nearest grid point.
     pub(super) fn angles(&self, time: f64) -> Row {
-        let count = self.points.len().max(1);
         let steps = (time / STEP).round();
         let h = time - steps * STEP;
-        let index = (steps as i64).rem_euclid(count as i64) as usize;
+        let point = &self.points[steps.rem_euclid(self.points.len() as f64) as usize];
         let mut out = [0.0; MAX];
-        if let Some(point) = self.points.get(index) {
-            for (i, value) in out.iter_mut().enumerate() {
-                *value = point.q[i] + h * (point.v[i] + 0.5 * h * point.a[i]);
-            }
+        for (i, value) in out.iter_mut().enumerate() {
+            *value = point.q[i] + h * (point.v[i] + 0.5 * h * point.a[i]);
         }
         out
     }
@@ -37,7 +33,6 @@ impl Track {
 /// Kinds of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Style {
-    /// Random Fourier series.
     Fourier,
     /// Moves between random poses with soft profiles and dwells.
     Moves,

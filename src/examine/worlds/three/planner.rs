@@ -11,11 +11,8 @@ use crate::examine::worlds::random::Rng;
 /// How a controller runs programs, and what faults change of it.
 #[derive(Clone, Debug)]
 pub(super) struct Tuning {
-    /// Factor on zone radii.
     pub(super) zone: f64,
-    /// Factors on accelerations by joint.
     pub(super) acceleration: Row,
-    /// Factor on all speeds.
     pub(super) speed: f64,
     /// Speed that the tool never passes \[m/s\].
     pub(super) cap: f64,
@@ -34,7 +31,6 @@ pub(super) struct Tuning {
 /// A wait that is not in the program.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wait {
-    /// After this move, from 0.
     pub(super) after: usize,
     /// Duration \[s\].
     pub(super) time: f64,

@@ -19,11 +19,8 @@ const COPPER_HEAT: f64 = 0.12;
 /// What a robot's power has beyond its model.
 #[derive(Clone, Debug)]
 pub(super) struct Supply {
-    /// Factor on the base power.
     base: f64,
-    /// Factors on the copper losses.
     loss: Row,
-    /// Share that is given back.
     regeneration: f64,
     /// Fans: share of the base power, and period \[s\].
     fans: [f64; 2],
@@ -63,15 +60,11 @@ impl Supply {
 /// A fault of the power.
 #[derive(Clone, Debug)]
 pub(super) struct PowerFault {
-    /// Effect id.
     pub(super) id: &'static str,
-    /// Form.
     pub(super) form: &'static str,
-    /// Joints from 0.
     pub(super) joints: Vec<usize>,
     /// Size: of the unit of the library's parameter, by joint or in the first place.
     pub(super) size: Row,
-    /// Which of the two forms.
     second: bool,
     /// Shape: a rate \[rad/s\], a current \[A\], a time \[s\] or an energy \[J\].
     shape: f64,

@@ -7,7 +7,6 @@
 pub(super) struct Profile {
     /// Durations \[s\] and jerks of the seven pieces.
     pieces: [(f64, f64); 7],
-    /// Distance, sets the end exactly.
     distance: f64,
 }
 

@@ -12,7 +12,6 @@ pub(super) struct SignalLaw {
     pub(super) size: f64,
     /// The only joint that has it (from 0).
     pub(super) only: Option<usize>,
-    /// Form.
     pub(super) form: SignalForm,
 }
 

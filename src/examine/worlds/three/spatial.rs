@@ -85,11 +85,8 @@ fn turned(joint: &Joint, angle: f64) -> M3 {
 /// State of the arm: angles \[rad\], rates \[rad/s\], accelerations \[rad/s²\].
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Point {
-    /// Angles.
     pub(super) q: Row,
-    /// Rates.
     pub(super) v: Row,
-    /// Accelerations.
     pub(super) a: Row,
 }
 

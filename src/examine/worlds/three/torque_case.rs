@@ -1,10 +1,11 @@
 //! Cases with torque logs: healthy, parameters, one, two, outside.
 
 use super::build::nominal;
-use super::draw_drive::small_lag_equivalents;
+use super::catalogue::{self, EFFECTS, MOTOR_EFFECTS};
 use super::drive::{Rotors, Run, World, logged};
+use super::drive_faults::small_lag_equivalents;
 use super::everyday::{Day, Everyday};
-use super::fault::{EFFECTS, Fault, MOTOR_EFFECTS, Place};
+use super::fault::{Fault, Place};
 use super::logfile::{Recorder, csv};
 use super::motion::{Style, entry, style, track};
 use super::truth::{Evidence, apart, everyday, heldout, share};
@@ -24,7 +25,6 @@ const DRAWS: usize = 5;
 pub(super) struct Schedule {
     /// Duration of a period \[s\].
     pub(super) period: f64,
-    /// Periods in a log.
     pub(super) cycles: usize,
     /// Sampling rate \[Hz\].
     pub(super) rate: f64,
@@ -53,17 +53,11 @@ impl Schedule {
 
 /// A robot, its logs and what is told of them.
 pub(super) struct Setting {
-    /// Robot and model.
     pub(super) world: World,
-    /// Its spread.
     pub(super) spread: Spread,
-    /// Schedule.
     pub(super) schedule: Schedule,
-    /// Present logs.
     pub(super) runs: Vec<Run>,
-    /// The held-out log.
     pub(super) heldout: Run,
-    /// Earlier logs.
     pub(super) baselines: Vec<Run>,
 }
 
@@ -159,8 +153,8 @@ fn sized(setting: &Setting, wanted: &[&'static str], rng: &mut Rng) -> Vec<Fault
         let torque = rms(clean.iter().copied());
         for draw in 1..=DRAWS {
             // Seven axes have no coupled wrist: another rotor instead.
-            let drawn =
-                Fault::draw(id, &place, rng).or_else(|| Fault::draw("rotor_inertia", &place, rng));
+            let drawn = catalogue::draw(id, &place, rng)
+                .or_else(|| catalogue::draw("rotor_inertia", &place, rng));
             let Some(drawn) = drawn else { break };
             // From barely visible to strong; two in three above 5 % of the joint's torque.
             let target = rng.log_between(0.02, 0.4);

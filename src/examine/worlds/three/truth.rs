@@ -144,7 +144,7 @@ fn nuisances(world: &World, states: &[Point], spread: &Spread) -> Vec<Vec<Vec<f6
     let axes = arm.axes();
     let plain: Vec<Row> = states.iter().map(|at| arm.rigid(at)).collect();
     let mut columns = Vec::new();
-    let mut add = |rows: Vec<Row>| columns.push(by_joint(axes, rows.iter().copied()));
+    let mut add = |rows: Vec<Row>| columns.push(by_joint(axes, &rows));
     for link in 0..axes {
         for parameter in 0..PARAMETERS {
             let mut off = arm.clone();

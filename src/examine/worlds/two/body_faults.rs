@@ -1,13 +1,14 @@
 //! Draws faults of bodies, springs, gears, encoders and forces.
 
-use crate::examine::worlds::model::{MAX, V3};
+use crate::examine::worlds::api::single;
+use crate::examine::worlds::model::V3;
 use std::f64::consts::{PI, TAU};
 
 use super::arm::block;
 use super::fault::{Action, Fault, Ground};
 use super::rigid::GRAVITY;
 use super::structure::{Change, Contact, Encoder, Flex, Wrist};
-use super::terms::{Law, Term};
+use super::terms::Term;
 use crate::examine::worlds::random::Rng;
 
 /// Ids drawn here.
@@ -89,7 +90,7 @@ fn links(g: &Ground, rng: &mut Rng) -> Fault {
     let far = (3.0 * g.spread.mass).max(0.2);
     for &link in &chosen {
         if let Some(old) = g.robot.arm.bodies.get(link) {
-            let mut body = old.clone();
+            let mut body = *old;
             let more = rng.between(far, far + 0.4);
             let factor = if rng.chance(0.5) { 1.0 + 1.5 * more } else { 1.0 / (1.0 + 1.5 * more) };
             body.mass *= factor;
@@ -107,49 +108,61 @@ fn links(g: &Ground, rng: &mut Rng) -> Fault {
     if chosen == [g.n() - 1] { fault.like(&["payload"]) } else { fault }
 }
 
+/// A disc behind a viscous coupling or a clutch that slips, and a rigid one.
 fn rotor(g: &Ground, rng: &mut Rng) -> Fault {
     let i = rng.below(g.n());
     let most = 2.0 * g.robot.arm.rotor[i];
     let size = (g.torque(i, rng) / g.scale.acceleration[i]).clamp(0.05 * most, most);
     let form = rng.below(3);
     let name = ["viscous coupling", "slipping clutch", "rigid"][form];
-    let stiff = size / 0.008;
-    let limit = 1.6 * size * g.scale.acceleration[i];
-    let (value, action) = match form {
-        0 => (size, Action::Terms(vec![Term::new(i, Law::Coupling, &[size, stiff])])),
-        1 => (size, Action::Terms(vec![Term::new(i, Law::Clutch, &[size, stiff, limit])])),
-        _ => {
-            let value = if rng.chance(0.3) { -size.min(0.5 * g.robot.arm.rotor[i]) } else { size };
-            let mut inertia = [0.0; MAX];
-            inertia[i] = value;
-            (value, Action::Body(vec![Change::Rotor { inertia }]))
-        }
+    let fault = if form == 2 {
+        let value = if rng.chance(0.3) { -size.min(0.5 * g.robot.arm.rotor[i]) } else { size };
+        let change = Change::Rotor { inertia: single(i, value) };
+        Fault::new("rotor_inertia", name, &[i], Action::Body(vec![change])).graded(
+            "inertia",
+            Some(i),
+            value,
+        )
+    } else {
+        let stiff = size / 0.008;
+        let limit = if form == 1 { 1.6 * size * g.scale.acceleration[i] } else { f64::INFINITY };
+        Fault::terms("rotor_inertia", name, &[i], |i| {
+            let term = Term::new(i, move |x, states| {
+                let slip = x.v - states[0];
+                // Implicit in the disc's own speed: stable for every stiffness of the coupling.
+                let torque = stiff * slip / (1.0 + x.now.dt * stiff / size);
+                let torque = torque.clamp(-limit, limit);
+                states[0] += x.now.dt * torque / size;
+                (0.0, torque)
+            });
+            (term, vec![("inertia", size, form == 0)])
+        })
     };
-    let fault = Fault::new("rotor_inertia", name, &[i], action).parameter(
-        "inertia",
-        Some(i),
-        value,
-        form != 1,
-    );
     if i < 2 { fault.like(&["link_parameters"]) } else { fault }
 }
 
+/// A spring on a crank, and a gas spring; the slope at the centre is the stiffness.
 fn spring(g: &Ground, rng: &mut Rng) -> Fault {
     let i = if rng.chance(0.8) { 1 } else { g.loaded(rng) };
     let size = 1.5 * g.torque(i, rng) * rng.sign();
     let centre = g.scale.middle[i] + g.scale.width[i] * rng.between(-0.5, 0.5);
     let reach = g.scale.width[i].min(1.2).sin().max(0.1);
-    let crank = rng.chance(0.5);
-    let term = if crank {
-        Term::new(i, Law::Crank, &[2.0 * size / reach, centre, 0.5, rng.between(0.2, 0.4)])
+    let (name, slope, term) = if rng.chance(0.5) {
+        let (k, arm) = (2.0 * size / reach, rng.between(0.2, 0.4));
+        let term = Term::smooth(i, move |x| {
+            let d = x.q - centre;
+            let length = (1.0 + arm * arm - 2.0 * arm * d.cos()).max(1e-6).sqrt();
+            k * d.sin() * (1.0 - 0.5 / length)
+        });
+        ("spring on a crank", k * (1.0 - 0.5 / (1.0 - arm)), term)
     } else {
-        Term::new(i, Law::Gas, &[size / reach, centre, rng.between(0.15, 0.4)])
+        let (k, fill) = (size / reach, rng.between(0.15, 0.4));
+        let term = Term::smooth(i, move |x| {
+            let d = x.q - centre;
+            k * d.sin() * (1.0 - fill * d.cos()).max(0.05).powf(-1.3)
+        });
+        ("gas spring on a crank", k * (1.0 - fill).powf(-1.3), term)
     };
-    let name = if crank { "spring on a crank" } else { "gas spring on a crank" };
-    // The slope at the centre is the stiffness.
-    let p = term.p;
-    let slope =
-        if crank { p[0] * (1.0 - p[2] / (1.0 - p[3])) } else { p[0] * (1.0 - p[2]).powf(-1.3) };
     Fault::new("gravity_spring", name, &[i], Action::Terms(vec![term]))
         .own("stiffness", Some(i), slope)
         .graded("centre", Some(i), centre)
@@ -187,28 +200,33 @@ fn encoder(g: &Ground, rng: &mut Rng) -> Fault {
     )
 }
 
+/// A hose with friction inside (Dahl), one that hardens, and one that is taut beyond an angle.
 fn cable(g: &Ground, rng: &mut Rng) -> Fault {
     let joints = g.joints(2, rng);
     let form = rng.below(3);
     let name = ["hose with hysteresis", "hardening hose", "hose that is slack at one side"][form];
-    let mut terms = Vec::new();
-    for &i in &joints {
+    let fault = Fault::terms("cable", name, &joints, |i| {
         let size = 1.5 * g.torque(i, rng);
         let width = g.scale.width[i];
         let centre = g.scale.middle[i] + width * rng.between(-0.4, 0.4);
-        let k = size / width;
-        terms.push(match form {
-            0 => Term::new(i, Law::HoseHysteresis, &[k, centre, 0.15 * size, 0.15 * width]),
-            1 => Term::new(i, Law::Hardening, &[0.5 * k, centre, 0.7 * k / (width * width)]),
-            _ => Term::new(i, Law::Slack, &[1.5 * k, centre, rng.sign(), 0.1 * width]),
+        let k = size / width * [1.0, 0.5, 1.5][form];
+        let side = if form == 2 { rng.sign() } else { 1.0 };
+        let (cubic, soft) = (0.7 * size / width.powi(3), 0.1 * width);
+        let term = Term::new(i, move |x, states| {
+            let d = x.q - centre;
+            let torque = match form {
+                0 => {
+                    let step = x.now.dt / (0.15 * width);
+                    states[0] = (states[0] + step * x.v) / (1.0 + step * x.v.abs());
+                    k * d + 0.15 * size * states[0]
+                }
+                1 => k * d + cubic * d * d * d,
+                _ => side * k * 0.5 * (side * d + (d * d + soft * soft).sqrt()),
+            };
+            (0.0, torque)
         });
-    }
-    let values: Vec<(usize, f64, f64)> = terms.iter().map(|t| (t.joint, t.p[0], t.p[1])).collect();
-    let mut fault = Fault::new("cable", name, &joints, Action::Terms(terms));
-    for (i, k, centre) in values {
-        fault = fault.parameter("stiffness", Some(i), k, form == 0);
-        fault = fault.parameter("centre", Some(i), centre, form != 2);
-    }
+        (term, vec![("stiffness", k, form == 0), ("centre", centre, form != 2)])
+    });
     fault.like(&["gravity_spring"])
 }
 
@@ -247,26 +265,26 @@ fn ripple(g: &Ground, rng: &mut Rng) -> Fault {
     let joints = g.joints(2, rng);
     let form = rng.below(3);
     let name = ["two harmonics", "washed out by speed", "grows with the load"][form];
-    let mut fault = Fault::new("ripple", name, &joints, Action::Nothing);
-    let mut terms = Vec::new();
-    for i in joints {
+    Fault::terms("ripple", name, &joints, |i| {
         // At most a third of the samples per wave at twice the rms speed.
         let most = (TAU * g.rate / (6.0 * g.scale.rate[i])).clamp(6.0, 400.0);
         let order = rng.log_between(3.0, most).round().max(2.0);
         let (size, phase) = (1.4 * g.torque(i, rng), rng.between(0.0, TAU));
-        let law = [Law::Harmonics, Law::WashedRipple, Law::LoadedRipple][form];
-        let p = match form {
-            0 => [size, phase, order, rng.between(0.2, 0.45), rng.between(0.0, TAU)],
-            1 => [size, phase, order, 1.5 * g.scale.rate[i], 0.0],
-            _ => [0.6 * size, phase, order, 0.8 / g.scale.load[i], 0.0],
-        };
-        terms.push(Term::new(i, law, &p));
-        fault = fault
-            .parameter("amplitude", Some(i), p[0], form == 0)
-            .graded("phase", Some(i), phase)
-            .graded("order", Some(i), order);
-    }
-    Fault { action: Action::Terms(terms), ..fault }
+        let size = if form == 2 { 0.6 * size } else { size };
+        let (share, other) =
+            if form == 0 { (rng.between(0.2, 0.45), rng.between(0.0, TAU)) } else { (0.0, 0.0) };
+        let (fast, loaded) = (1.5 * g.scale.rate[i], 0.8 / g.scale.load[i]);
+        let term = Term::smooth(i, move |x| {
+            let wave = (order * x.q - phase).cos();
+            match form {
+                0 => size * (wave + share * (2.0 * order * x.q - other).cos()),
+                1 => size * wave / (1.0 + (x.v / fast).powi(2)),
+                _ => size * (1.0 + loaded * x.load.abs()) * wave,
+            }
+        });
+        let told = [("amplitude", size, form == 0), ("phase", phase, true), ("order", order, true)];
+        (term, told.to_vec())
+    })
 }
 
 fn wrist(g: &Ground, rng: &mut Rng) -> Fault {

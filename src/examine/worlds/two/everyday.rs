@@ -117,7 +117,6 @@ pub(super) struct Gear {
     speed: f64,
     /// Waves over the angle: amplitude, waves per rad, phase.
     waves: [(f64, f64, f64); 3],
-    /// Relative difference of the directions.
     side: f64,
     /// Angle in which 1/e of the bristle force is left to build up \[rad\].
     pub(super) distance: f64,
@@ -137,7 +136,6 @@ pub(super) struct Day {
 #[derive(Clone, Debug)]
 pub(super) struct Everyday {
     smooth: Vec<Smooth>,
-    /// Friction by joint.
     pub(super) gears: Vec<Gear>,
     /// Constant offset of the torque \[Nm\].
     pub(super) offset: Row,

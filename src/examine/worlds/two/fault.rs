@@ -6,21 +6,18 @@ use super::sensor::Sensor;
 use super::structure::{Bristle, Change, Contact, Encoder, Flex, Wrist};
 use super::terms::Term;
 use crate::examine::worlds::api::Truth;
-use crate::examine::worlds::model::{MAX, Spread};
+use crate::examine::worlds::model::Spread;
 use crate::examine::worlds::random::Rng;
 
 /// What a fault does.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub(super) enum Action {
-    /// Torques at joints.
     Terms(Vec<Term>),
-    /// Bodies, rotors, gravity.
     Body(Vec<Change>),
     /// An elastic gear or a gap.
     Flex(Flex),
     /// An encoder that shows a wrong angle.
     Encoder(Encoder),
-    /// Long bristles.
     Bristle(Bristle),
     /// Coupling of the wrist.
     Wrist(Wrist),
@@ -28,16 +25,13 @@ pub(super) enum Action {
     Sensor(Sensor),
     /// A force on the flange.
     Contact(Contact),
-    /// No torque.
     Nothing,
 }
 
 /// A fault.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub(super) struct Fault {
-    /// The truth.
     pub(super) truth: Truth,
-    /// Its action.
     pub(super) action: Action,
 }
 
@@ -45,6 +39,27 @@ impl Fault {
     /// A fault; joints from 0.
     pub(super) fn new(id: &str, form: &str, joints: &[usize], action: Action) -> Self {
         Self { truth: Truth::new(id, form, joints), action }
+    }
+
+    /// A fault with a law at each joint, from 0; `make` gives the law and its parameters: name, value,
+    /// and whether it means the same in the library.
+    pub(super) fn terms(
+        id: &str,
+        form: &str,
+        joints: &[usize],
+        mut make: impl FnMut(usize) -> (Term, Vec<(&'static str, f64, bool)>),
+    ) -> Self {
+        let mut fault = Self::new(id, form, joints, Action::Nothing);
+        let mut terms = Vec::new();
+        for joint in joints {
+            let (term, told) = make(*joint);
+            terms.push(term);
+            for (name, value, graded) in told {
+                fault.truth.tell(name, Some(*joint), value, graded);
+            }
+        }
+        fault.action = Action::Terms(terms);
+        fault
     }
 
     /// Adds a parameter that means the same as in the library.
@@ -91,9 +106,7 @@ impl Fault {
 /// What sizes are drawn from.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ground<'a> {
-    /// The robot.
     pub(super) robot: &'a Robot,
-    /// Levels of the motions.
     pub(super) scale: &'a Scale,
     /// How the nominal model is believed.
     pub(super) spread: Spread,
@@ -139,14 +152,5 @@ impl Ground<'_> {
     /// A torque \[Nm\] of a drawn relative size at a joint.
     pub(super) fn torque(&self, i: usize, rng: &mut Rng) -> f64 {
         rng.log_between(SIZE.0, SIZE.1) * self.scale.torque[i]
-    }
-
-    /// A mask of joints.
-    pub(super) fn mask(&self, joints: &[usize]) -> [bool; MAX] {
-        let mut out = [false; MAX];
-        for (i, place) in out.iter_mut().enumerate() {
-            *place = joints.contains(&i) || (joints.is_empty() && i < self.n());
-        }
-        out
     }
 }

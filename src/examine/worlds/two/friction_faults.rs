@@ -1,11 +1,10 @@
 //! Draws faults of friction.
 
-use std::f64::consts::{PI, TAU};
-
 use super::fault::{Action, Fault, Ground};
 use super::structure::Bristle;
-use super::terms::{Law, Term};
+use super::terms::{FLANK, Seen, Term, window};
 use crate::examine::worlds::random::Rng;
+use std::f64::consts::{FRAC_2_PI, PI, TAU};
 
 /// Ids drawn here.
 pub(super) const IDS: [&str; 11] = [
@@ -39,160 +38,190 @@ pub(super) fn draw(id: &str, ground: &Ground, rng: &mut Rng) -> Fault {
     }
 }
 
-/// Begins a fault of terms, one for each joint, with parameters by joint.
-fn of_terms(id: &str, form: &str, joints: &[usize], make: &mut dyn FnMut(usize) -> Term) -> Fault {
-    Fault::new(id, form, joints, Action::Terms(joints.iter().map(|i| make(*i)).collect()))
-}
-
-/// Reports parameters of each term: names with the place in the law's parameters.
-fn report(mut fault: Fault, names: &[(&str, usize, bool)]) -> Fault {
-    let terms = if let Action::Terms(terms) = &fault.action { terms.clone() } else { Vec::new() };
-    for term in terms {
-        for (name, place, graded) in names {
-            let value = term.p.get(*place).copied().unwrap_or(0.0);
-            fault = fault.parameter(name, Some(term.joint), value, *graded);
-        }
-    }
-    fault
-}
-
+/// Friction of the healthy gear, scaled; a tanh; a level that grows with the logarithm of the speed.
 fn level(g: &Ground, rng: &mut Rng) -> Fault {
     let joints = g.joints(3, rng);
     let form = rng.below(3);
-    let law = [Law::Wear, Law::Tanh, Law::Logarithmic][form];
     let name = ["scaled friction of the worn gear", "tanh", "logarithm of the speed"][form];
-    let mut make = |i: usize| {
+    Fault::terms("friction_level", name, &joints, |i| {
         let whole = g.torque(i, rng);
-        let dry = rng.between(0.2, 0.8);
-        let wet = whole * (1.0 - dry) / g.scale.rate[i];
-        let third = [0.0, 0.012, 0.1 * g.scale.speed[i]][form];
-        let second = if form == 2 { whole * (1.0 - dry) / 1.8 } else { wet };
-        Term::new(i, law, &[whole * dry, second, third])
-    };
-    let fault = of_terms("friction_level", name, &joints, &mut make);
-    let graded = form != 2;
-    report(fault, &[("coulomb", 0, graded), ("viscous", 1, graded)])
+        let share = rng.between(0.2, 0.8);
+        let dry = whole * share;
+        let wet = whole * (1.0 - share) / if form == 2 { 1.8 } else { g.scale.rate[i] };
+        let slow = 0.1 * g.scale.speed[i];
+        let term = match form {
+            0 => Term::new(i, move |x, _| (dry * x.dry, wet * x.wet * x.v)),
+            1 => Term::smooth(i, move |x| dry * (x.v / 0.012).tanh() + wet * x.v),
+            _ => Term::level(i, move |x| dry + wet * (x.v.abs() / slow).ln_1p()),
+        };
+        (term, vec![("coulomb", dry, form != 2), ("viscous", wet, form != 2)])
+    })
 }
 
+/// A. Tustin 1947; D. Hess, A. Soom 1990; C. Makkar et al. 2005.
 fn stribeck(g: &Ground, rng: &mut Rng) -> Fault {
     let joints = g.joints(2, rng);
     let form = rng.below(3);
-    let law = [Law::Tustin, Law::Lorentz, Law::Makkar][form];
     let name = ["Tustin exponential", "Hess and Soom", "Makkar's difference of tanh"][form];
-    let mut make = |i: usize| {
+    Fault::terms("stribeck", name, &joints, |i| {
         let speed = (g.scale.speed[i] * rng.log_between(0.02, 0.15)).clamp(0.005, 0.6);
-        Term::new(i, law, &[2.5 * g.torque(i, rng), speed, 0.08 * speed])
-    };
-    let fault = of_terms("stribeck", name, &joints, &mut make);
-    report(fault, &[("stiction", 0, form != 2), ("velocity", 1, form == 0)])
+        let (size, fast) = (2.5 * g.torque(i, rng), 0.08 * speed);
+        let term = match form {
+            0 => Term::level(i, move |x| size * (-x.v.abs() / speed).exp()),
+            1 => Term::level(i, move |x| size / (1.0 + (x.v / speed).powi(2))),
+            _ => Term::smooth(i, move |x| size * ((x.v / fast).tanh() - (x.v / speed).tanh())),
+        };
+        (term, vec![("stiction", size, form != 2), ("velocity", speed, form == 0)])
+    })
 }
 
+/// P. Carreau 1972, H. Eyring 1936, and churning of oil above a speed.
 fn nonlinear(g: &Ground, rng: &mut Rng) -> Fault {
     let joints = g.joints(3, rng);
     let form = rng.below(3);
-    let law = [Law::Carreau, Law::Eyring, Law::Churning][form];
     let name = ["Carreau shear thinning", "Eyring asinh", "churning above a speed"][form];
-    let mut make = |i: usize| {
+    Fault::terms("nonlinear_viscous", name, &joints, |i| {
         let (size, top) = (1.4 * g.torque(i, rng), g.scale.speed[i]);
         let bend = top * rng.between(0.04, 0.15);
-        match form {
-            0 => Term::new(i, law, &[size / bend * 0.6, bend, rng.between(0.15, 0.45)]),
-            1 => Term::new(i, law, &[size / (0.5 * top / bend).asinh(), bend]),
-            _ => Term::new(i, law, &[2.0 * size / (0.5 * top).powi(2), 0.25 * top]),
-        }
-    };
-    let fault = of_terms("nonlinear_viscous", name, &joints, &mut make);
-    report(fault, &[("coefficient", 0, false)])
+        let (size, term) = match form {
+            0 => {
+                let (size, power) = (size / bend * 0.6, 0.5 * (rng.between(0.15, 0.45) - 1.0));
+                let law = move |x: &Seen| size * x.v * (1.0 + (x.v / bend).powi(2)).powf(power);
+                (size, Term::smooth(i, law))
+            }
+            1 => {
+                let size = size / (0.5 * top / bend).asinh();
+                (size, Term::smooth(i, move |x| size * (x.v / bend).asinh()))
+            }
+            _ => {
+                let (size, from) = (2.0 * size / (0.5 * top).powi(2), 0.25 * top);
+                (size, Term::level(i, move |x| size * (x.v.abs() - from).max(0.0).powi(2)))
+            }
+        };
+        (term, vec![("coefficient", size, false)])
+    })
 }
 
+/// Round at rest, and another power in both directions.
 fn asymmetry(g: &Ground, rng: &mut Rng) -> Fault {
     let joints = g.joints(3, rng);
     let round = rng.chance(0.6);
-    let mut make = |i: usize| {
-        let value = rng.sign() * g.torque(i, rng) / g.scale.rate[i];
-        if round {
-            Term::new(i, Law::RoundAsymmetry, &[value, 0.05 * g.scale.speed[i]])
-        } else {
-            Term::new(i, Law::PowerAsymmetry, &[value, rng.between(1.25, 1.6)])
-        }
-    };
     let name = if round { "hyperbola" } else { "power of the speed" };
-    let fault = of_terms("viscous_asymmetry", name, &joints, &mut make);
-    report(fault, &[("asymmetry", 0, round)])
+    Fault::terms("viscous_asymmetry", name, &joints, |i| {
+        let value = rng.sign() * g.torque(i, rng) / g.scale.rate[i];
+        let term = if round {
+            let corner = 0.05 * g.scale.speed[i];
+            Term::smooth(i, move |x| value * ((x.v * x.v + corner * corner).sqrt() - corner))
+        } else {
+            let power = rng.between(1.25, 1.6);
+            Term::smooth(i, move |x| value * x.v.abs().powf(power))
+        };
+        (term, vec![("asymmetry", value, round)])
+    })
 }
 
 fn load(g: &Ground, rng: &mut Rng) -> Fault {
-    let joints = vec![g.loaded(rng)];
+    let joints = [g.loaded(rng)];
     let form = rng.below(3);
-    let law = [Law::RoundLoad, Law::HertzLoad, Law::FullLoad][form];
     let name = ["hyperbola of the load", "Hertzian contact", "saturating"][form];
-    let mut make = |i: usize| {
+    let fault = Fault::terms("load_friction", name, &joints, |i| {
         let (size, typical) = (g.torque(i, rng).min(0.3 * g.scale.load[i]), g.scale.load[i]);
-        match form {
-            0 => Term::new(i, law, &[size / typical, 0.2 * typical]),
-            1 => Term::new(i, law, &[size / typical.powf(2.0 / 3.0), 2.0 / 3.0]),
-            _ => Term::new(i, law, &[1.3 * size / typical, 1.5 * typical]),
-        }
-    };
-    let fault = of_terms("load_friction", name, &joints, &mut make).like(&["gear_efficiency"]);
-    report(fault, &[("mu", 0, form == 0)])
+        let (mu, term) = match form {
+            0 => {
+                let (mu, round) = (size / typical, 0.2 * typical);
+                (mu, Term::level(i, move |x| mu * (x.load.abs().hypot(round) - round)))
+            }
+            1 => {
+                let mu = size / typical.powf(2.0 / 3.0);
+                (mu, Term::level(i, move |x| mu * x.load.abs().powf(2.0 / 3.0)))
+            }
+            _ => {
+                let (mu, full) = (1.3 * size / typical, 1.5 * typical);
+                (mu, Term::level(i, move |x| mu * full * (x.load.abs() / full).tanh()))
+            }
+        };
+        (term, vec![("mu", mu, form == 0)])
+    });
+    fault.like(&["gear_efficiency"])
 }
 
+/// A soft change between driving and driven, and gears that lose more at part load.
 fn efficiency(g: &Ground, rng: &mut Rng) -> Fault {
-    let joints = vec![g.loaded(rng)];
+    let joints = [g.loaded(rng)];
     let blended = rng.chance(0.5);
-    let law = if blended { Law::BlendedEfficiency } else { Law::PartLoad };
-    let mut likeness = false;
-    let mut make = |i: usize| {
+    let name = if blended { "logistic in the power" } else { "worse at part load" };
+    let mut alike = false;
+    let fault = Fault::terms("gear_efficiency", name, &joints, |i| {
         let loss = (g.torque(i, rng) / g.scale.load[i]).min(0.3);
         let driven = (loss * rng.between(0.3, 2.5)).min(0.4);
-        likeness = (driven / loss - 1.0).abs() < 0.15;
-        let power = g.scale.load[i] * g.scale.rate[i];
-        let third = if blended { 0.1 * power } else { 0.4 * g.scale.load[i] };
-        Term::new(i, law, &[loss, driven, third])
-    };
-    let name = if blended { "logistic in the power" } else { "worse at part load" };
-    let mut fault = of_terms("gear_efficiency", name, &joints, &mut make);
-    if likeness {
-        fault = fault.like(&["load_friction"]);
-    }
-    report(fault, &[("motoring", 0, blended), ("generating", 1, blended)])
+        alike = (driven / loss - 1.0).abs() < 0.15;
+        let width = 0.1 * g.scale.load[i] * g.scale.rate[i];
+        let part = 0.4 * g.scale.load[i];
+        let term = Term::level(i, move |x| {
+            let size = x.load.abs();
+            if blended {
+                size * (driven + (loss - driven) / (1.0 + (-x.load * x.v / width).exp()))
+            } else {
+                let share = if x.load * x.v > 0.0 { loss } else { driven };
+                size * share * (1.0 + part / (size + part))
+            }
+        });
+        (term, vec![("motoring", loss, blended), ("generating", driven, blended)])
+    });
+    if alike { fault.like(&["load_friction"]) } else { fault }
 }
 
+/// Grease, then housing; a hyperbola; a temperature that the own motion heats.
 fn warm_up(g: &Ground, rng: &mut Rng) -> Fault {
     let joints = g.joints(3, rng);
     let form = rng.below(3);
-    let law = [Law::TwoStage, Law::Hyperbolic, Law::HeatBalance][form];
     let name = ["grease and housing", "hyperbola of time", "heat balance"][form];
     let time = g.length * rng.between(0.25, 0.8);
-    let mut make = |i: usize| {
+    Fault::terms("warm_up", name, &joints, |i| {
         let whole = 1.5 * g.torque(i, rng);
-        let dry = rng.between(0.2, 0.8);
-        let wet = whole * (1.0 - dry) / g.scale.rate[i];
-        match form {
-            0 => Term::new(i, law, &[whole * dry, wet, 0.4 * time, 1.6 * time, 0.5]),
-            1 => Term::new(i, law, &[whole * dry, wet, 1.5 * time]),
-            _ => Term::new(i, law, &[whole * dry, wet, 1.5 * time, 0.5 / g.scale.rate[i]]),
-        }
-    };
-    let fault = of_terms("warm_up", name, &joints, &mut make);
-    report(fault, &[("coulomb", 0, true), ("viscous", 1, true), ("time_constant", 2, false)])
+        let share = rng.between(0.2, 0.8);
+        let (dry, wet) = (whole * share, whole * (1.0 - share) / g.scale.rate[i]);
+        let heat = 0.5 / g.scale.rate[i];
+        let lag = if form == 0 { 0.4 * time } else { 1.5 * time };
+        let term = Term::new(i, move |x, states| {
+            let t = x.now.t.max(0.0);
+            let left = match form {
+                0 => 0.5 * (-t / lag).exp() + 0.5 * (-t / (4.0 * lag)).exp(),
+                1 => (1.0 + t / lag).powi(-2),
+                _ => {
+                    if x.now.t > 0.0 {
+                        let warming = heat * x.v.abs() + 1.0 - states[0];
+                        states[0] = (states[0] + x.now.dt * warming / lag).min(1.0);
+                    }
+                    1.0 - states[0]
+                }
+            };
+            (dry * left, wet * x.v * left)
+        });
+        (term, vec![("coulomb", dry, true), ("viscous", wet, true), ("time_constant", lag, false)])
+    })
 }
 
+/// R. von Mises' bump, a rough half, triangles over the angle.
 fn position(g: &Ground, rng: &mut Rng) -> Fault {
     let joints = g.joints(2, rng);
     let form = rng.below(3);
-    let law = [Law::Mises, Law::RoughHalf, Law::Triangle][form];
     let name = ["von Mises bump", "a rough half", "triangles"][form];
-    let mut make = |i: usize| {
+    Fault::terms("position_friction", name, &joints, |i| {
         let size = 1.6 * g.torque(i, rng);
-        let place = g.scale.middle[i] + g.scale.width[i] * rng.between(-0.6, 0.6);
-        let narrow = 2.0 / (g.scale.width[i] * g.scale.width[i]).clamp(0.1, 2.0);
-        let third = [narrow, 0.25 * g.scale.width[i], rng.between(1.0, 2.0)][form];
-        Term::new(i, law, &[size, place, third])
-    };
-    let fault = of_terms("position_friction", name, &joints, &mut make);
-    report(fault, &[("amplitude", 0, false), ("phase", 1, form == 0)])
+        let width = g.scale.width[i];
+        let place = g.scale.middle[i] + width * rng.between(-0.6, 0.6);
+        let (narrow, waves) = (2.0 / (width * width).clamp(0.1, 2.0), rng.between(1.0, 2.0));
+        let term = Term::level(i, move |x| {
+            let d = x.q - place;
+            match form {
+                0 => size * (narrow * (d.cos() - 1.0)).exp(),
+                1 => size * (1.0 + (d / (0.25 * width)).tanh()),
+                _ => size * FRAC_2_PI * (waves * d).cos().asin(),
+            }
+        });
+        (term, vec![("amplitude", size, false), ("phase", place, form == 0)])
+    })
 }
 
 /// Angle in which 1/e of the bristle force is left to build up after a reversal \[rad\].
@@ -211,70 +240,64 @@ fn reversal(bristle: &Bristle, guess: f64) -> f64 {
 }
 
 fn presliding(g: &Ground, rng: &mut Rng) -> Fault {
-    let i = rng.below(g.n());
-    let distance = rng.log_between(0.004, 0.1).min(0.25 * g.scale.width[i]);
+    let joint = rng.below(g.n());
+    let distance = rng.log_between(0.004, 0.1).min(0.25 * g.scale.width[joint]);
     let slip = rng.chance(0.5);
-    let bristle = if slip {
-        let list = [0.25, 0.5, 0.9, 1.6, 2.8, 4.5].map(|x| x * distance * 0.6).to_vec();
-        Bristle { joint: i, state: vec![0.0; list.len()], distances: list, power: 0.0 }
+    let (name, distances, power) = if slip {
+        let list = [0.25, 0.5, 0.9, 1.6, 2.8, 4.5].map(|x| x * distance * 0.6);
+        ("Maxwell slip", list.to_vec(), 0.0)
     } else {
-        Bristle {
-            joint: i,
-            distances: vec![distance],
-            power: rng.between(1.6, 3.0),
-            state: vec![0.0],
-        }
+        ("Bouc and Wen", vec![distance], rng.between(1.6, 3.0))
     };
-    let name = if slip { "Maxwell slip" } else { "Bouc and Wen" };
+    let bristle = Bristle { joint, state: vec![0.0; distances.len()], distances, power };
     let value = reversal(&bristle, distance);
-    Fault::new("presliding", name, &[i], Action::Bristle(bristle)).graded(
+    Fault::new("presliding", name, &[joint], Action::Bristle(bristle)).graded(
         "distance",
-        Some(i),
+        Some(joint),
         value,
     )
 }
 
+/// A brake that lets go slowly, one that judders, one that fades with speed.
 fn brake(g: &Ground, rng: &mut Rng) -> Fault {
     let joints = g.joints(1, rng);
     let form = rng.below(3);
-    let law = [Law::Release, Law::Judder, Law::Fade][form];
     let name = ["slow release", "judder", "fading with speed"][form];
     let from = rng.between(0.1, 0.5) * g.period;
     let to = from + rng.between(0.15, 0.35) * g.period;
-    let mut make = |i: usize| {
+    let fault = Fault::terms("brake_drag", name, &joints, |i| {
         let size = 1.5 * g.torque(i, rng);
-        match form {
-            0 => Term::new(i, law, &[size, from, to, 0.05]),
-            1 => Term::new(i, law, &[size, from, to, 0.4, rng.between(3.0, 12.0)]),
-            _ => Term::new(i, law, &[1.5 * size, from, to, 0.7 * g.scale.speed[i]]),
-        }
-    };
-    let fault = of_terms("brake_drag", name, &joints, &mut make).within(from, to);
-    let fault = report(fault, &[("drag", 0, form != 2)]);
-    fault.graded("t_start_s", joints.first().copied(), from).graded(
-        "t_end_s",
-        joints.first().copied(),
-        to,
-    )
+        let size = if form == 2 { 1.5 * size } else { size };
+        let waves = if form == 1 { rng.between(3.0, 12.0) } else { 0.0 };
+        let fading = 0.7 * g.scale.speed[i];
+        let term = Term::level(i, move |x| match form {
+            0 => {
+                let w = window(x.now, from, to + 0.15, 0.15);
+                size * w * w * (3.0 - 2.0 * w)
+            }
+            1 => size * (1.0 + 0.4 * (waves * x.q).cos()) * window(x.now, from, to, FLANK),
+            _ => size / (1.0 + x.v.abs() / fading) * window(x.now, from, to, FLANK),
+        });
+        (term, vec![("drag", size, form != 2)])
+    });
+    let joint = joints.first().copied();
+    fault.within(from, to).graded("t_start_s", joint, from).graded("t_end_s", joint, to)
 }
 
+/// A slow drift, and Coulomb friction that is not the same in both directions.
 fn offset(g: &Ground, rng: &mut Rng) -> Fault {
     let joints = g.joints(3, rng);
     let drifting = rng.chance(0.5);
-    let mut make = |i: usize| {
-        let size = rng.sign() * g.torque(i, rng);
-        if drifting {
-            let rate = TAU / (g.length * rng.between(1.0, 3.0));
-            Term::new(
-                i,
-                Law::DriftingOffset,
-                &[size, rng.between(0.05, 0.15), rate, rng.between(0.0, PI)],
-            )
-        } else {
-            Term::new(i, Law::SidedCoulomb, &[size])
-        }
-    };
     let name = if drifting { "slow drift" } else { "asymmetric Coulomb friction" };
-    let fault = of_terms("torque_offset", name, &joints, &mut make);
-    report(fault, &[("offset", 0, true)])
+    Fault::terms("torque_offset", name, &joints, |i| {
+        let size = rng.sign() * g.torque(i, rng);
+        let term = if drifting {
+            let rate = TAU / (g.length * rng.between(1.0, 3.0));
+            let (share, phase) = (rng.between(0.05, 0.15), rng.between(0.0, PI));
+            Term::smooth(i, move |x| size * (1.0 + share * (rate * x.now.t + phase).sin()))
+        } else {
+            Term::level(i, move |x| size * x.s)
+        };
+        (term, vec![("offset", size, true)])
+    })
 }

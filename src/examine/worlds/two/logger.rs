@@ -1,15 +1,13 @@
 //! Logs as files: quantised, noisy, jittered, with lost rows.
 
+use super::plant::Record;
 use crate::examine::worlds::model::{MAX, Row};
-use std::fmt::Write as _;
-
-use super::sim::Record;
 use crate::examine::worlds::random::Rng;
+use crate::examine::worlds::table::{Table, quantised};
 
 /// How a logger writes.
 #[derive(Clone, Debug)]
 pub(super) struct Style {
-    /// Row.
     pub(super) n: usize,
     /// Decimals of times, angles and torques.
     pub(super) decimals: (usize, usize, usize),
@@ -17,7 +15,6 @@ pub(super) struct Style {
     pub(super) start: f64,
     /// Standard deviation of the time stamps \[s\].
     pub(super) jitter: f64,
-    /// Share of lost rows.
     pub(super) lost: f64,
     /// Step of the encoders \[rad\].
     pub(super) encoder: f64,
@@ -27,7 +24,6 @@ pub(super) struct Style {
     pub(super) noise: Row,
     /// Share of the noise that is kept from row to row.
     pub(super) colour: f64,
-    /// Whether rates are written.
     pub(super) rates: bool,
 }
 
@@ -85,62 +81,45 @@ pub(super) fn csv(
     extra: &[Extra],
     rng: &mut Rng,
 ) -> String {
-    let n = style.n;
-    let mut out = header(style, torques, extra);
-    let first = record.t.first().copied().unwrap_or(0.0);
+    let groups: &[&str] = match (torques, style.rates) {
+        (true, true) => &["q", "qd", "tau"],
+        (true, false) => &["q", "tau"],
+        (false, _) => &["q"],
+    };
+    let single: Vec<&str> = extra.iter().map(|(name, ..)| *name).collect();
+    let mut out = Table::new(style.n, groups, &single);
+    let first = record.t[0];
     let (mut colour, mut last) = ([0.0; MAX], -1.0_f64);
     let fresh = (1.0 - style.colour * style.colour).sqrt();
     let (dt, dq, dtau) = style.decimals;
-    for (row, (t, q)) in record.t.iter().zip(&record.q).enumerate() {
+    let shortest = 0.1_f64.powf(dt as f64);
+    for (row, t) in record.t.iter().enumerate() {
         for x in &mut colour {
             *x = style.colour * *x + fresh * rng.normal();
         }
         if row > 3 && rng.chance(style.lost) {
             continue;
         }
-        let step = 10f64.powi(-i32::try_from(dt).unwrap_or(4));
-        let stamp = (t - first + style.start + style.jitter * rng.normal()).max(last + step);
-        last = stamp;
-        let _ = write!(out, "{stamp:.dt$}");
-        for x in q.iter().take(n) {
-            let shown = (x / style.encoder).round() * style.encoder;
-            let _ = write!(out, ",{shown:.dq$}");
+        last = (t - first + style.start + style.jitter * rng.normal()).max(last + shortest);
+        out.row(last, dt);
+        for x in &record.q[row][..style.n] {
+            out.value(quantised(*x, style.encoder), dq);
         }
-        if style.rates
-            && torques
-            && let Some(v) = record.v.get(row)
-        {
-            for x in v.iter().take(n) {
+        if style.rates && torques {
+            for x in &record.v[row][..style.n] {
                 // Rates come from differences of the encoder over some ms.
-                let shown = x + 60.0 * style.encoder * rng.normal();
-                let _ = write!(out, ",{shown:.dq$}");
+                out.value(x + 60.0 * style.encoder * rng.normal(), dq);
             }
         }
-        if torques && let Some(tau) = record.tau.get(row) {
-            for i in 0..n {
-                let raw = tau[i] + style.noise[i] * colour[i];
-                let shown = (raw / style.current[i]).round() * style.current[i];
-                let _ = write!(out, ",{shown:.dtau$}");
+        if torques {
+            for i in 0..style.n {
+                let raw = record.tau[row][i] + style.noise[i] * colour[i];
+                out.value(quantised(raw, style.current[i]), dtau);
             }
         }
         for (_, decimals, values) in extra {
-            let value = values.get(row).copied().unwrap_or(0.0);
-            let _ = write!(out, ",{value:.decimals$}");
+            out.value(values[row], *decimals);
         }
-        out.push('\n');
     }
-    out
-}
-
-fn header(style: &Style, torques: bool, extra: &[Extra]) -> String {
-    let mut names = vec!["t".to_owned()];
-    names.extend((1..=style.n).map(|i| format!("q{i}")));
-    if style.rates && torques {
-        names.extend((1..=style.n).map(|i| format!("qd{i}")));
-    }
-    if torques {
-        names.extend((1..=style.n).map(|i| format!("tau{i}")));
-    }
-    names.extend(extra.iter().map(|(name, _, _)| (*name).to_owned()));
-    names.join(",") + "\n"
+    out.finish()
 }

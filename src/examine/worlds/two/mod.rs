@@ -11,6 +11,7 @@ mod logger;
 mod motion;
 mod motion_case;
 mod outside;
+mod plant;
 mod power;
 mod power_case;
 mod program;
@@ -40,10 +41,10 @@ pub(super) fn case(seed: u64, number: usize) -> Case {
 
 /// A nominal robot and its torques.
 #[cfg(feature = "internals")]
-pub(super) fn plain(seed: u64) -> super::Plain {
+pub(super) fn plain(seed: u64) -> super::plain::Plain {
     let rng = &mut super::random::Rng::stream(seed, 0, "plain");
     let robot = robot::draw(false, rng);
-    super::Plain::new(&robot.sheet(), rng, |[q, v, a], rotors| {
+    super::plain::Plain::new(&robot.sheet(), rng, |[q, v, a], rotors| {
         let with = rotors == super::plain::Rotors::With;
         let rotor = if with { robot.arm.rotor } else { Default::default() };
         truth::model(&robot, &rotor, q, v, a)

@@ -23,13 +23,11 @@ pub(super) struct Motion {
 /// Shapes of motions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Shape {
-    /// Random Fourier series.
     Fourier,
     /// Moves with trapezoidal speed, and dwells.
     Trapezoid,
     /// Moves with smooth (degree seven) profiles, and dwells.
     SCurve,
-    /// Rising frequency.
     Chirp,
     /// Slow moves through most of the range.
     Slow,

@@ -5,8 +5,8 @@
 //! 2011), base load with fans, coils of brakes.
 
 use super::fault::{Action, Fault};
+use super::plant::Record;
 use super::robot::Robot;
-use super::sim::Record;
 use crate::examine::worlds::model::{MAX, Row};
 use crate::examine::worlds::random::Rng;
 
@@ -19,11 +19,9 @@ pub(super) enum Kind {
     SkinCopper,
     /// Conduction and switching: p0·(|τ| + τ²/p1).
     Switches,
-    /// Dead time: p0·p1·tanh(|τ|/p1).
     DeadTime,
     /// Hysteresis and eddies: p0·(v² + p1·|v|).
     Bertotti,
-    /// Excess loss: p0·|v|^1.5.
     Excess,
     /// A bus capacitor of p0 J; the rest of braking energy is burnt.
     Chopper,
@@ -42,7 +40,6 @@ pub(super) enum Kind {
 /// A power fault.
 #[derive(Clone, Debug)]
 pub(super) struct Loss {
-    /// Kind.
     pub(super) kind: Kind,
     /// Parameters, by joint (the first where it is of the robot).
     pub(super) p: [[f64; 3]; MAX],
@@ -205,7 +202,6 @@ pub(super) struct Means<'a> {
     pub(super) speed: &'a Row,
     /// Mean power given back \[W\].
     pub(super) braking: f64,
-    /// Row.
     pub(super) n: usize,
 }
 

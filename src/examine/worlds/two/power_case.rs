@@ -1,10 +1,10 @@
 //! Cases of electric power.
 
 use super::logger::{Style, csv};
+use super::plant::{Plant, Record};
 use super::power::{self, Everyday, Loss, Means, power};
 use super::robot::Robot;
 use super::setup::{Plan, Setup, levels, plan, plant, setup};
-use super::sim::{Plant, Record};
 use super::torque_case::{simulate, told};
 use super::truth;
 use crate::examine::worlds::api::{Case, Kind, Truth, largest, nats, options};

@@ -87,7 +87,6 @@ pub(super) struct Planned {
     pub(super) motion: Motion,
     /// Number of the movement, 0 while the program waits.
     pub(super) command: Vec<usize>,
-    /// Cycle from 1.
     pub(super) cycle: Vec<usize>,
     /// Starts of the cycles \[s\].
     pub(super) starts: Vec<f64>,

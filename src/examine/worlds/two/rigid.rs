@@ -26,7 +26,6 @@ pub(super) fn steiner(c: &V3) -> M3 {
 /// A serial arm.
 #[derive(Clone, Debug)]
 pub(super) struct Arm {
-    /// Its joints.
     pub(super) joints: Vec<Joint>,
     /// Its bodies, one for each joint.
     pub(super) bodies: Vec<Body>,
@@ -41,13 +40,10 @@ pub(super) struct Arm {
 /// Where the bodies are: all in the frame of the base.
 #[derive(Clone, Debug)]
 pub(super) struct Pose {
-    /// Number of joints.
     pub(super) n: usize,
-    /// Axes.
     pub(super) axis: [V3; MAX],
     /// `origin × axis`: velocity at the base's origin per joint rate.
     pub(super) moment: [V3; MAX],
-    /// Orientation of the last frame.
     pub(super) last: M3,
     /// The flange \[m\].
     pub(super) flange: V3,

@@ -8,17 +8,13 @@ use crate::examine::worlds::random::Rng;
 /// A model in the sense of the nominal robot file, with what motions need.
 #[derive(Clone, Debug)]
 pub(super) struct Robot {
-    /// Bodies and rotors.
     pub(super) arm: Arm,
-    /// Architecture.
     pub(super) build: Build,
-    /// Main dimensions.
     pub(super) size: Size,
     /// Coulomb friction \[Nm\].
     pub(super) coulomb: Row,
     /// Viscous friction \[Nm s/rad\].
     pub(super) viscous: Row,
-    /// Gear ratio.
     pub(super) ratio: Row,
     /// Copper loss \[W/(Nm)²\] at the joint.
     pub(super) loss: Row,

@@ -1,7 +1,7 @@
 //! What each fault contributes to the torques at a sample.
 
 use super::fault::Action;
-use super::sim::Record;
+use super::plant::Record;
 use super::state::State;
 use super::structure::{Wrist, composed};
 use crate::examine::worlds::api::minus;

@@ -2,23 +2,19 @@
 
 use super::everyday::{Everyday, Scale, scale};
 use super::motion::{Motion, Shape, draw, rooms};
+use super::plant::{Gains, PathSpec, Plant};
 use super::robot::{self, Robot};
-use super::sim::{Gains, PathSpec, Plant};
 use crate::examine::worlds::model::{CAD, COMMISSIONED, MAX, Row, Spread};
 use crate::examine::worlds::random::Rng;
 
 /// Robot and file.
 #[derive(Clone, Debug)]
 pub(super) struct Setup {
-    /// The model in the file.
     pub(super) nominal: Robot,
-    /// The robot.
     pub(super) robot: Robot,
-    /// How the model is believed.
     pub(super) spread: Spread,
     /// Whether the file is TOML; else URDF.
     pub(super) toml: bool,
-    /// Whether there are baseline logs.
     pub(super) baseline: bool,
     /// Rotor inertias in the file \[kg m²\].
     pub(super) in_file: Row,
@@ -64,15 +60,10 @@ pub(super) fn setup(
 pub(super) struct Plan {
     /// Motions of the logs; baseline logs have the same.
     pub(super) motions: Vec<Motion>,
-    /// Motion of the held-out log.
     pub(super) heldout: Motion,
-    /// Number of baseline logs.
     pub(super) baselines: usize,
-    /// Repetitions in each log.
     pub(super) cycles: usize,
-    /// Repetitions of the held-out log.
     pub(super) heldout_cycles: usize,
-    /// Whether the run-up is logged.
     pub(super) transient: bool,
     /// Sampling rate \[Hz\].
     pub(super) rate: f64,

@@ -3,97 +3,14 @@
 //! Semi-implicit Euler with the speed derivative of friction taken implicitly (linearly implicit), at
 //! 1 to 4 kHz. Positions and torques are what happens.
 
-use super::everyday::{Day, Everyday};
 use super::fault::Fault;
 use super::motion::{GRID, Motion};
-use super::robot::Robot;
+use super::plant::{Plant, RAMP, REST, Record, Run};
 use super::state::State;
 use super::terms::TICK;
 use crate::examine::worlds::model::{MAX, Row};
 use crate::examine::worlds::random::Rng;
 
-/// What is the same in all logs of a case.
-#[derive(Clone, Debug)]
-pub(super) struct Plant {
-    /// The model in the file: also the controller's.
-    pub(super) nominal: Robot,
-    /// The robot.
-    pub(super) robot: Robot,
-    /// Its everyday deviations.
-    pub(super) everyday: Everyday,
-    /// The healthy path of the torque.
-    pub(super) path: PathSpec,
-    /// Rotor inertia \[kg m²\] whose torque the drive takes off what it reports.
-    pub(super) subtract: Row,
-    /// Gains of the controller.
-    pub(super) gains: Gains,
-}
-
-/// Numbers of the torque path: poles, moving average, delay \[s\].
-#[derive(Clone, Copy, Debug)]
-pub(super) struct PathSpec {
-    /// Time constants \[s\].
-    pub(super) poles: [f64; 2],
-    /// Moving average \[s\].
-    pub(super) mean: f64,
-    /// Delay \[s\].
-    pub(super) delay: f64,
-}
-
-/// Gains of the cascade.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Gains {
-    /// Bandwidth of the speed loop \[rad/s\].
-    pub(super) speed: f64,
-    /// Position gain over it.
-    pub(super) position: f64,
-    /// Integral rate over it.
-    pub(super) integral: f64,
-    /// Share of the reference speed that is fed forward.
-    pub(super) forward: f64,
-}
-
-/// One run: motion, repetitions and sampling.
-#[derive(Clone, Debug)]
-pub(super) struct Run<'a> {
-    /// The motion.
-    pub(super) motion: &'a Motion,
-    /// Repetitions.
-    pub(super) cycles: usize,
-    /// Step \[s\].
-    pub(super) dt: f64,
-    /// Sampling rate \[Hz\].
-    pub(super) rate: f64,
-    /// Whether the run-up is logged.
-    pub(super) transient: bool,
-    /// Friction of the day.
-    pub(super) day: Day,
-}
-
-/// What happened, without noise, at the samples.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Record {
-    /// Time from the start of the first period \[s\].
-    pub(super) t: Vec<f64>,
-    /// Angles of the encoders \[rad\].
-    pub(super) q: Vec<Row>,
-    /// Rates of the motors \[rad/s\].
-    pub(super) v: Vec<Row>,
-    /// Accelerations of the motors \[rad/s²\].
-    pub(super) a: Vec<Row>,
-    /// Torques as the drive reports them \[Nm\].
-    pub(super) tau: Vec<Row>,
-    /// Torques of the motors, at the joint \[Nm\].
-    pub(super) motor: Vec<Row>,
-    /// What each fault contributes to the reported torques \[Nm\].
-    pub(super) delta: Vec<Vec<Row>>,
-}
-
-/// Run-up before the first period: rest, then a ramp of the speed \[s\]:
-/// duration of the rest.
-pub(super) const REST: f64 = 0.4;
-/// Duration of the ramp \[s\].
-pub(super) const RAMP: f64 = 2.0;
 /// Angle over which feed-forward friction turns \[rad/s\].
 const TURN: f64 = 0.02;
 

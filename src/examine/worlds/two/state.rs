@@ -4,9 +4,9 @@ use crate::examine::worlds::model::{MAX, Row};
 use nalgebra::SMatrix;
 
 use super::fault::{Action, Fault};
+use super::plant::{Plant, RAMP, REST, Run};
 use super::rigid::{Arm, Pose, solve};
 use super::sensor::Path;
-use super::sim::{Plant, RAMP, REST, Run};
 use super::structure::{Change, Wrist, composed};
 use super::terms::{Now, TICK};
 
@@ -93,7 +93,7 @@ impl<'a> State<'a> {
                     kv[flex.joint] = 0.7 * plant.gains.speed * (own + arm.rotor[flex.joint]);
                 }
                 Action::Encoder(encoder) => {
-                    link_q[encoder.joint] += encoder.error(q[encoder.joint])
+                    link_q[encoder.joint] += encoder.error(q[encoder.joint]);
                 }
                 _ => {}
             }

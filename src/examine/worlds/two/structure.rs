@@ -9,7 +9,6 @@ use crate::examine::worlds::model::{Body, MAX, Row, V3};
 pub(super) enum Change {
     /// A body more at a link (payload at the last one).
     Add {
-        /// Link from 0.
         link: usize,
         /// The body, in the frame of the link's joint.
         body: Body,
@@ -20,7 +19,6 @@ pub(super) enum Change {
     },
     /// A rail with a mass that slides between two stops.
     Slide {
-        /// Link from 0.
         link: usize,
         /// The body in the middle of the rail.
         body: Body,
@@ -30,12 +28,7 @@ pub(super) enum Change {
         place: f64,
     },
     /// A body put in place of another.
-    Replace {
-        /// Link from 0.
-        link: usize,
-        /// The body.
-        body: Body,
-    },
+    Replace { link: usize, body: Body },
     /// Gravity turned.
     Tilt {
         /// Angle from the vertical \[rad\].
@@ -50,10 +43,7 @@ pub(super) enum Change {
         now: f64,
     },
     /// Rotor inertia more \[kg m²\].
-    Rotor {
-        /// By joint.
-        inertia: Row,
-    },
+    Rotor { inertia: Row },
 }
 
 /// Friction angle of the sliding mass: share of its weight along the rail.
@@ -71,7 +61,7 @@ impl Change {
             Self::Slide { link, body, rail, place } => add(arm, *link, body, &(rail * *place)),
             Self::Replace { link, body } => {
                 if let Some(own) = arm.bodies.get_mut(*link) {
-                    *own = body.clone();
+                    *own = *body;
                 }
             }
             Self::Tilt { angle, direction, now, .. } => {
@@ -120,7 +110,7 @@ impl Change {
 
 fn add(arm: &mut Arm, link: usize, body: &Body, shift: &V3) {
     if let Some(own) = arm.bodies.get_mut(link) {
-        let moved = Body { com: body.com + shift, ..body.clone() };
+        let moved = Body { com: body.com + shift, ..*body };
         *own = joined(own, &moved);
     }
 }
@@ -137,11 +127,9 @@ pub(super) fn composed<'a>(base: &Arm, changes: impl Iterator<Item = &'a Change>
 /// An elastic gear, perhaps with a gap: the link has a state of its own.
 #[derive(Clone, Debug)]
 pub(super) struct Flex {
-    /// Joint from 0.
     pub(super) joint: usize,
     /// Stiffness \[Nm/rad\].
     pub(super) stiffness: f64,
-    /// Hardening: torque k·δ·(1 + hard·(δ/δ₀)²).
     pub(super) hard: f64,
     /// δ₀ \[rad\].
     pub(super) reference: f64,
@@ -180,7 +168,6 @@ impl Flex {
 /// An encoder that shows a wrong angle: true = shown + offset + wave.
 #[derive(Clone, Debug)]
 pub(super) struct Encoder {
-    /// Joint from 0.
     pub(super) joint: usize,
     /// Offset \[rad\].
     pub(super) offset: f64,
@@ -200,13 +187,11 @@ impl Encoder {
 /// Bristles that need a long way.
 #[derive(Clone, Debug)]
 pub(super) struct Bristle {
-    /// Joint from 0.
     pub(super) joint: usize,
     /// Distances of Maxwell-slip elements \[rad\]; a single one for the power law.
     pub(super) distances: Vec<f64>,
     /// Power of Bouc and Wen; 0 for Maxwell-slip elements.
     pub(super) power: f64,
-    /// Their states.
     pub(super) state: Vec<f64>,
 }
 
@@ -240,7 +225,6 @@ pub(super) struct Wrist {
 /// A force on the flange.
 #[derive(Clone, Debug)]
 pub(super) struct Contact {
-    /// Direction, frame of the base.
     pub(super) direction: V3,
     /// Largest force \[N\].
     pub(super) force: f64,

@@ -1,8 +1,8 @@
 //! The truth of a case: what the faults change, what is left, and what can be told.
 
 use super::logger::Style;
+use super::plant::{Plant, Record};
 use super::robot::Robot;
-use super::sim::{Plant, Record};
 use crate::examine::worlds::api::{HeldOut, by_joint, held_out, minus, nats, single};
 use crate::examine::worlds::model::{MAX, PARAMETERS, Row, Spread, one_off};
 
@@ -149,7 +149,7 @@ fn columns(plant: &Plant, spread: &Spread, mean: &Mean, rotor_sd: &Row) -> Vec<V
     let base = &plant.nominal.arm;
     let plain: Vec<Row> = mean.motion.iter().map(|(q, v, a)| base.torques(q, v, a)).collect();
     let mut out = Vec::new();
-    let mut add = |rows: Vec<Row>| out.push(by_joint(n, rows.iter().copied()));
+    let mut add = |rows: Vec<Row>| out.push(by_joint(n, &rows));
     for link in 0..n {
         for parameter in 0..PARAMETERS {
             let mut arm = base.clone();
@@ -192,5 +192,5 @@ pub(super) fn information(
     let sd: Vec<f64> = (0..n)
         .map(|i| (style.deviation(i).powi(2) / mean.cycles.max(1.0) + left[i]).sqrt())
         .collect();
-    mean.delta.iter().map(|rows| nats(&by_joint(n, rows.iter().copied()), &sd, &columns)).collect()
+    mean.delta.iter().map(|rows| nats(&by_joint(n, rows), &sd, &columns)).collect()
 }

@@ -14,7 +14,6 @@ pub(in crate::examine::worlds::one) enum Place {
     Weighed,
     /// At one to three links, not at the first: only one of its parameters shows.
     Bodies,
-    /// At one joint.
     Single,
     /// At axis 2 or 3: balancers carry weight.
     Balanced,

@@ -24,9 +24,7 @@ use std::rc::Rc;
 pub(super) struct Moment<'a> {
     /// Time within the period \[s\].
     pub(super) phase: f64,
-    /// The real arm.
     pub(super) arm: &'a Arm,
-    /// Where it is.
     pub(super) pose: &'a Pose,
     /// Angles \[rad\].
     pub(super) q: &'a Row,
@@ -41,11 +39,9 @@ pub(super) type Field = Box<dyn Fn(&Moment) -> Row>;
 
 /// A law or a reader at a joint.
 pub(super) struct Part<T: ?Sized> {
-    /// Joint, from 0.
     pub(super) joint: usize,
     /// The other joint that it sees, from 0.
     pub(super) other: usize,
-    /// What it does.
     pub(super) what: Box<T>,
 }
 
@@ -53,11 +49,9 @@ pub(super) struct Part<T: ?Sized> {
 pub(super) struct Fault {
     /// The truth; `nats` is filled in later.
     pub(super) truth: Truth,
-    /// Torques of the prescribed motion.
     pub(super) field: Option<Field>,
     /// Whether the field goes through the gears and adds to the load; otherwise only laws see it.
     pub(super) loads: bool,
-    /// Laws of joints.
     pub(super) laws: Vec<Part<dyn Law>>,
     /// Distortions of the reported torque, in order.
     pub(super) readers: Vec<Part<dyn Reader>>,
@@ -109,11 +103,8 @@ impl Fault {
 
 /// What a builder knows of the case.
 pub(super) struct Context<'a> {
-    /// The real arm.
     pub(super) arm: &'a Arm,
-    /// Levels of the first log.
     pub(super) level: &'a Level,
-    /// Motion of the first log.
     pub(super) path: &'a Path,
     /// Period of the first log \[s\].
     pub(super) period: f64,
@@ -125,11 +116,8 @@ pub(super) struct Context<'a> {
 
 /// Joints and form of a fault, and its size over what is usual (about a tenth of the torque at 1).
 pub(super) struct Order<'a> {
-    /// Joints, from 0.
     pub(super) joints: &'a [usize],
-    /// Number of the form.
     pub(super) form: usize,
-    /// Size.
     pub(super) size: f64,
 }
 

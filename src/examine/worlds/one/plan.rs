@@ -1,9 +1,8 @@
-//! A case: what is drawn first, and the dispatch to the makers.
+//! What is drawn first in a case.
 
 use super::arm::Arm;
 use super::design::design;
-use super::{motion_case, torque_case};
-use crate::examine::worlds::api::{self, Case, Kind};
+use crate::examine::worlds::api::Kind;
 use crate::examine::worlds::model::{CAD, COMMISSIONED, Spread};
 use crate::examine::worlds::random::Rng;
 
@@ -39,12 +38,11 @@ pub(super) struct Plan {
     pub(super) spread: Spread,
     /// Whether there are logs from before the fault.
     pub(super) baseline: bool,
-    /// Whether the period is told.
     pub(super) period_told: bool,
 }
 
 impl Plan {
-    fn new(seed: u64, number: usize, kind: Kind) -> Self {
+    pub(super) fn new(seed: u64, number: usize, kind: Kind) -> Self {
         let mut rng = Rng::stream(seed, number, "plan");
         let motion = kind == Kind::Motion;
         let electric = kind == Kind::Power;
@@ -74,10 +72,4 @@ impl Plan {
         let sheet = self.nominal.sheet(format!("arm-{:04}", self.number));
         sheet.file(self.rotors != Rotors::InModel)
     }
-}
-
-/// The case of a seed and a number.
-pub(in crate::examine::worlds) fn case(seed: u64, number: usize) -> Case {
-    let plan = Plan::new(seed, number, api::kind(seed, number));
-    if plan.kind == Kind::Motion { motion_case::make(&plan) } else { torque_case::make(&plan) }
 }
