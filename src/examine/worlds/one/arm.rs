@@ -38,12 +38,10 @@ pub(super) struct Arm {
 }
 
 impl Arm {
-    /// Number of joints.
     pub(super) fn count(&self) -> usize {
         self.joints.len()
     }
 
-    /// What its file says.
     pub(super) fn sheet(&self, name: String) -> Sheet<'_> {
         Sheet {
             name,
@@ -80,7 +78,6 @@ pub(super) fn box_inertia(mass: f64, sides: V3) -> M3 {
     M3::from_diagonal(&V3::new(s.y + s.z, s.x + s.z, s.x + s.y)) * (mass / 12.0)
 }
 
-/// A factor about 1.
 pub(super) fn factor(rng: &mut Rng, deviation: f64) -> f64 {
     (1.0 + rng.spread(deviation)).max(LEAST_FACTOR)
 }

@@ -75,7 +75,6 @@ fn way(arm: &Arm, from: &Row, to: &Row) -> (f64, f64) {
     (length, turned)
 }
 
-/// Plans one move.
 fn plan(arm: &Arm, from: &Row, order: &Move, tuning: &Tuning) -> Planned {
     let (length, turned) = way(arm, from, &order.to);
     let tool = (order.speed * tuning.speed).min(tuning.ceiling);

@@ -84,7 +84,6 @@ fn offset(r: f64, rng: &mut Rng) -> Layout {
     }
 }
 
-/// A seven-axis arm.
 fn seven(r: f64, rng: &mut Rng) -> Layout {
     let bend = V3::x() * (r * rng.uniform((0.0, 0.05)));
     let heights = [0.12, 0.28, 0.46, 0.66, 0.85, 1.02];

@@ -88,7 +88,6 @@ impl Smooth {
         Self { other, radial, terms, size }
     }
 
-    /// Its value.
     fn at(&self, x: &[f64; 4]) -> f64 {
         let mut sum = 0.0;
         for (w, phase, weight) in &self.terms {
@@ -185,7 +184,6 @@ impl Everyday {
         }
     }
 
-    /// A day.
     pub(super) fn day(&self, rng: &mut Rng) -> Day {
         let (mut coulomb, mut viscous) = ([1.0; MAX], [1.0; MAX]);
         // Temperature moves all joints together; viscous friction follows it most.

@@ -124,10 +124,16 @@ impl<F: Fn(&View) -> f64> Law for Static<F> {
 /// A torque behind an oscillator: `ẍ + 2ζω ẋ + ω² x = ω² u`.
 pub(super) struct Oscillator<F> {
     /// Natural frequency \[rad/s\].
-    pub(super) omega: f64,
-    pub(super) zeta: f64,
+    omega: f64,
+    zeta: f64,
     /// What drives it \[Nm\].
-    pub(super) drive: F,
+    drive: F,
+}
+
+impl<F: Fn(&View) -> f64> Oscillator<F> {
+    pub(super) fn new(omega: f64, zeta: f64, drive: F) -> Self {
+        Self { omega, zeta, drive }
+    }
 }
 
 impl<F: Fn(&View) -> f64> Law for Oscillator<F> {
@@ -146,10 +152,16 @@ impl<F: Fn(&View) -> f64> Law for Oscillator<F> {
 /// A torque of the view and of a quantity that follows with a lag: `T ẋ + x = u`.
 pub(super) struct Memory<U, F> {
     /// Time constant \[s\].
-    pub(super) lag: f64,
-    pub(super) input: U,
+    lag: f64,
+    input: U,
     /// Torque \[Nm\] from the view and the follower.
-    pub(super) output: F,
+    output: F,
+}
+
+impl<U: Fn(&View) -> f64, F: Fn(&View, f64) -> f64> Memory<U, F> {
+    pub(super) fn new(lag: f64, input: U, output: F) -> Self {
+        Self { lag, input, output }
+    }
 }
 
 impl<U: Fn(&View) -> f64, F: Fn(&View, f64) -> f64> Law for Memory<U, F> {
@@ -168,11 +180,17 @@ impl<U: Fn(&View) -> f64, F: Fn(&View, f64) -> f64> Law for Memory<U, F> {
 /// with both halves of the loop; the torque is a function of the view and z.
 pub(super) struct Bouc<F> {
     /// Angle in which 1/e is left \[rad\].
-    pub(super) distance: f64,
+    distance: f64,
     /// Shape of the loop: 0.5 is symmetric.
-    pub(super) shape: f64,
+    shape: f64,
     /// Torque \[Nm\].
-    pub(super) output: F,
+    output: F,
+}
+
+impl<F: Fn(&View, f64) -> f64> Bouc<F> {
+    pub(super) fn new(distance: f64, shape: f64, output: F) -> Self {
+        Self { distance, shape, output }
+    }
 }
 
 impl<F: Fn(&View, f64) -> f64> Law for Bouc<F> {

@@ -98,13 +98,11 @@ fn fit(path: &mut Path, arm: &Arm, j: usize, rng: &mut Rng) {
     }
 }
 
-/// A path of zeros.
 fn blank(steps: usize) -> Path {
     let rows = vec![[0.0; MAX]; steps];
     Path { q: rows.clone(), v: rows.clone(), a: rows }
 }
 
-/// Random Fourier series.
 fn fourier(arm: &Arm, steps: usize, rng: &mut Rng) -> Path {
     let mut path = blank(steps);
     let harmonics = HARMONICS.0 + rng.below(HARMONICS.1 - HARMONICS.0 + 1);

@@ -151,7 +151,6 @@ impl Fault {
         out
     }
 
-    /// The truth about it.
     fn truth(&self) -> Truth {
         let (id, forms) = FAULTS[self.number];
         let name = ["lag", "factor", "factor", "factor", "wait"][self.number];
@@ -211,7 +210,6 @@ fn nats(
     api::nats(&difference(&b, &a, count), &sd[..count], &columns)
 }
 
-/// A healthy controller.
 fn healthy(rng: &mut Rng) -> Tuning {
     let lag = rng.log(LAG);
     let off = factor(rng, OFF.0);
@@ -246,7 +244,6 @@ fn shown(fault: &Fault, moves: &[Move], plain: &Motion, with: &Motion) -> Vec<us
     }
 }
 
-/// Makes a case.
 pub(super) fn make(plan: &Plan) -> Case {
     let mut rng = plan.rng("program");
     let arm = &plan.nominal;

@@ -76,7 +76,6 @@ pub(super) fn coarse_load(arm: &Arm, path: &Path) -> Vec<Row> {
     rows.map(|i| inverse(arm, &pose(arm, &path.q[i]), &path.v[i], &path.a[i])).collect()
 }
 
-/// Levels of a motion.
 pub(super) fn level(arm: &Arm, path: &Path) -> Level {
     let load = coarse_load(arm, path);
     let mut out = Level::default();

@@ -163,7 +163,6 @@ fn sized(choice: &Choice, ctx: &Context, bench: &Bench, stages: &[Stage], want: 
     fault
 }
 
-/// Makes a case.
 pub(super) fn make(plan: &Plan) -> Case {
     let mut rng = plan.rng("scene");
     let arm = real(&plan.nominal, plan.spread, &mut plan.rng("real"));

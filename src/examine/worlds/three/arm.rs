@@ -44,12 +44,10 @@ const REST: f64 = 1e-7;
 const LEAST_FACTOR: f64 = 0.2;
 
 impl Arm {
-    /// Joints.
     pub(super) fn axes(&self) -> usize {
         self.joints.len()
     }
 
-    /// What its file says.
     pub(super) fn sheet(&self) -> Sheet<'_> {
         Sheet {
             name: self.name.clone(),

@@ -127,7 +127,6 @@ pub(super) struct Bodies<'a> {
 }
 
 impl<'a> Bodies<'a> {
-    /// Laws on an arm.
     pub(super) fn new(arm: &'a Arm, laws: &'a [BodyLaw]) -> Self {
         let mut links = arm.bodies.clone();
         let last = links.len().saturating_sub(1);

@@ -91,7 +91,6 @@ pub(super) struct Day {
 }
 
 impl Day {
-    /// A day.
     pub(super) fn new(rng: &mut Rng) -> Self {
         let mut day = Self { friction: [1.0; MAX], warmth: [1.0; MAX] };
         let common = rng.spread(0.01);
@@ -114,7 +113,6 @@ pub(super) struct Dry {
 }
 
 impl Everyday {
-    /// Habits of an arm.
     pub(super) fn new(arm: &Arm, rng: &mut Rng) -> Self {
         // The arm's share, then each joint's about it: mostly below 1.5 %.
         let common = rng.log_between(0.003, 0.015);

@@ -77,7 +77,6 @@ impl Fault {
         }
     }
 
-    /// The same with equivalents.
     pub(super) fn like(mut self, ids: &[&'static str]) -> Self {
         self.equivalents.extend(ids);
         self

@@ -27,6 +27,8 @@ mod profile;
 mod program;
 mod signal;
 mod spatial;
+#[cfg(test)]
+mod tests;
 
 mod torque_case;
 mod truth;

@@ -33,7 +33,6 @@ pub(super) struct Supply {
 }
 
 impl Supply {
-    /// A supply.
     pub(super) fn new(world: &World, spread: f64, rng: &mut Rng) -> Self {
         let arm = &world.nominal;
         let mut loss = [1.0; MAX];

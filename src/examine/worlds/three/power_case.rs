@@ -146,7 +146,6 @@ fn brakes_close(logs: &[Taken]) -> bool {
     })
 }
 
-/// A power case.
 pub(super) fn case(seed: u64, number: usize) -> Case {
     let mut rng = Rng::stream(seed, number, "power");
     let mut setting = Setting::new(seed, number, true, true);

@@ -57,7 +57,6 @@ pub(super) fn inertia_of(second: &M3) -> M3 {
     M3::identity() * second.trace() - second
 }
 
-/// Both bodies as one.
 pub(super) fn joined(a: &Body, b: &Body) -> Body {
     let mass = a.mass + b.mass;
     let com = (a.com * a.mass + b.com * b.mass) / mass.max(f64::MIN_POSITIVE);

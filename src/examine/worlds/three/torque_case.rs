@@ -133,14 +133,12 @@ impl Setting {
         self.world.nominal.sheet().file(self.world.rotors != Rotors::InModel)
     }
 
-    /// Options of the diagnosis.
     pub(super) fn options(&self) -> serde_json::Value {
         let period = self.schedule.told.then_some(self.schedule.period);
         options(&self.model().0, self.spread.trust, period)
     }
 }
 
-/// Faults at their sizes.
 fn sized(setting: &Setting, wanted: &[&'static str], rng: &mut Rng) -> Vec<Fault> {
     let Some(first) = setting.runs.first() else { return Vec::new() };
     let mut short = Run { entry: None, cycles: first.cycles.min(2), ..first.clone() };

@@ -96,7 +96,6 @@ impl Fault {
         self
     }
 
-    /// Its changes of bodies.
     pub(super) fn changes(&self) -> impl Iterator<Item = &Change> {
         let list: &[Change] = if let Action::Body(list) = &self.action { list } else { &[] };
         list.iter()
@@ -122,7 +121,6 @@ pub(super) struct Ground<'a> {
 const SIZE: (f64, f64) = (0.025, 0.45);
 
 impl Ground<'_> {
-    /// Number of joints.
     pub(super) fn n(&self) -> usize {
         self.robot.arm.n()
     }

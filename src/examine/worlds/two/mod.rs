@@ -24,6 +24,8 @@ mod sim;
 mod state;
 mod structure;
 mod terms;
+#[cfg(test)]
+mod tests;
 
 mod torque_case;
 mod truth;

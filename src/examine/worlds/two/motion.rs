@@ -60,7 +60,6 @@ impl Motion {
         (between(&self.q), between(&self.v), between(&self.a))
     }
 
-    /// Every so many samples.
     pub(super) fn thinned(&self, count: usize) -> Vec<(Row, Row, Row)> {
         let step = (self.q.len() / count.max(1)).max(1);
         let rows = self.q.iter().zip(&self.v).zip(&self.a);

@@ -20,7 +20,6 @@ const TERMS: usize = 7;
 const REST: f64 = 0.005;
 const GROWTH: f64 = 0.2;
 
-/// Draws one.
 pub(super) fn draw(g: &Ground, rng: &mut Rng) -> Fault {
     let which = rng.below(COUNT);
     let i = rng.below(g.n());

@@ -4,46 +4,26 @@
 //! chopper (D. Meike, L. Ribickis, Energy efficient use of robotics in the automobile industry, ICAR
 //! 2011), base load with fans, coils of brakes.
 
-use super::fault::{Action, Fault};
 use super::plant::Record;
 use super::robot::Robot;
+use crate::examine::worlds::api::{Truth, single};
 use crate::examine::worlds::model::{MAX, Row};
 use crate::examine::worlds::random::Rng;
+use std::f64::consts::TAU;
 
-/// Kinds of power faults; p0, p1, … are their parameters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
-    /// Copper loss p0·τ² that rises by a share p1 as the winding warms in p2 s.
-    WarmCopper,
-    /// p0·τ²·(1 + (v/p1)²): skin effect.
-    SkinCopper,
-    /// Conduction and switching: p0·(|τ| + τ²/p1).
-    Switches,
-    DeadTime,
-    /// Hysteresis and eddies: p0·(v² + p1·|v|).
-    Bertotti,
-    Excess,
-    /// A bus capacitor of p0 J; the rest of braking energy is burnt.
-    Chopper,
-    /// Braking power above p0 W is burnt.
-    Feeble,
-    /// p0 W that drift by a share p1 within p2 s.
-    Base,
-    /// A fan of p0 W that runs p1 of every p2 s.
-    Fan,
-    /// Coils: p0 W, with a pull-in of p1 times that.
-    PullIn,
-    /// Coils of the axes that move: p0 W in all.
-    EachAxis,
+/// What a power fault sees at one instant: time \[s\], rates, torques, and power given back \[W\].
+struct Seen<'a> {
+    t: f64,
+    v: &'a Row,
+    tau: &'a Row,
+    given: f64,
 }
 
-/// A power fault.
-#[derive(Clone, Debug)]
-pub(super) struct Loss {
-    pub(super) kind: Kind,
-    /// Parameters, by joint (the first where it is of the robot).
-    pub(super) p: [[f64; 3]; MAX],
-}
+/// A power fault: power more \[W\] by joint; that of the robot is in the first.
+pub(super) struct Loss(Box<Law>);
+
+/// A law of it.
+type Law = dyn Fn(&Seen, &mut State) -> Row;
 
 /// The everyday power of the robot.
 #[derive(Clone, Copy, Debug)]
@@ -78,8 +58,7 @@ pub(super) fn power(
     for (row, (v, tau)) in record.v.iter().zip(&record.motor).enumerate() {
         let t = record.t.get(row).copied().unwrap_or(0.0);
         let warm = 1.0 + everyday.warm * (1.0 - (-t.max(0.0) / 120.0).exp());
-        let mut whole =
-            robot.base_w + everyday.base.0 * (std::f64::consts::TAU * everyday.base.1 * t).sin();
+        let mut whole = robot.base_w + everyday.base.0 * (TAU * everyday.base.1 * t).sin();
         let mut braking = 0.0;
         for i in 0..n {
             let mechanical = tau[i] * v[i];
@@ -93,7 +72,8 @@ pub(super) fn power(
         whole += robot.regeneration * braking;
         let mut extra = 0.0;
         if let Some(loss) = fault {
-            let parts = loss.at(t, v, tau, (n, robot.regeneration * braking), &mut state);
+            let seen = Seen { t, v, tau, given: -robot.regeneration * braking };
+            let parts = (loss.0)(&seen, &mut state);
             for (share, part) in shares.iter_mut().zip(parts) {
                 *share += part.abs();
                 extra += part;
@@ -123,70 +103,15 @@ struct State {
     open: f64,
 }
 
-impl Loss {
-    /// Power more \[W\] by joint; faults of the robot are in the first.
-    fn at(&self, t: f64, v: &Row, tau: &Row, bus: (usize, f64), state: &mut State) -> Row {
-        let (n, given) = bus;
-        let mut out = [0.0; MAX];
-        let first = self.p[0];
-        match self.kind {
-            Kind::Chopper => {
-                // What would be given back goes to the capacitor, then to the resistor.
-                let energy = -given * state.dt;
-                let room = (first[0] - state.stored).max(0.0);
-                let kept = energy.min(room);
-                state.stored += kept - state.stored * (state.dt / 0.5).min(1.0);
-                out[0] = (energy - kept) / state.dt;
-            }
-            Kind::Feeble => out[0] = (-given - first[0]).max(0.0),
-            Kind::Base => out[0] = first[0] * (1.0 + first[1] * (t / first[2]).sin()),
-            Kind::Fan => {
-                let on = (t / first[2]).rem_euclid(1.0) < first[1];
-                out[0] = if on { first[0] } else { 0.0 };
-            }
-            Kind::PullIn | Kind::EachAxis => out[0] = self.coils(v, n, state),
-            _ => {
-                for i in 0..n {
-                    out[i] = self.of_joint(i, t, v[i].abs(), tau[i].abs());
-                }
-            }
-        }
-        out
+/// The number of axes whose brakes are open; follows how long they stand and are open.
+fn released(n: usize, v: &Row, state: &mut State) -> f64 {
+    let mut moving = 0.0;
+    for (still, v) in state.still.iter_mut().zip(v).take(n) {
+        *still = if v.abs() > STAND.0 { 0.0 } else { *still + state.dt };
+        moving += if *still < STAND.1 { 1.0 } else { 0.0 };
     }
-
-    fn of_joint(&self, i: usize, t: f64, speed: f64, torque: f64) -> f64 {
-        let p = &self.p[i];
-        if p[0] == 0.0 {
-            return 0.0;
-        }
-        match self.kind {
-            Kind::WarmCopper => {
-                p[0] * torque * torque * (1.0 + p[1] * (1.0 - (-t.max(0.0) / p[2]).exp()))
-            }
-            Kind::SkinCopper => p[0] * torque * torque * (1.0 + (speed / p[1]).powi(2)),
-            Kind::Switches => p[0] * (torque + torque * torque / p[1]),
-            Kind::DeadTime => p[0] * p[1] * (torque / p[1]).tanh(),
-            Kind::Bertotti => p[0] * (speed * speed + p[1] * speed),
-            _ => p[0] * speed.powf(1.5),
-        }
-    }
-
-    fn coils(&self, v: &Row, n: usize, state: &mut State) -> f64 {
-        let mut moving = 0.0;
-        for (i, still) in state.still.iter_mut().enumerate().take(n) {
-            *still = if v[i].abs() > STAND.0 { 0.0 } else { *still + state.dt };
-            moving += if *still < STAND.1 { 1.0 } else { 0.0 };
-        }
-        state.open = if moving > 0.0 { state.open + state.dt } else { 0.0 };
-        let p = self.p[0];
-        if self.kind == Kind::EachAxis {
-            p[0] * moving / n as f64
-        } else if moving > 0.0 {
-            p[0] * (1.0 + p[1] * (-state.open / PULL_IN).exp())
-        } else {
-            0.0
-        }
-    }
+    state.open = if moving > 0.0 { state.open + state.dt } else { 0.0 };
+    moving
 }
 
 /// What sizes of power faults are drawn from.
@@ -205,68 +130,101 @@ pub(super) struct Means<'a> {
     pub(super) n: usize,
 }
 
-/// Draws a power fault.
-pub(super) fn draw(which: usize, m: &Means, rng: &mut Rng) -> (Fault, Loss) {
+/// A loss of the whole robot.
+fn whole(law: impl Fn(&Seen, &mut State) -> f64 + 'static) -> Loss {
+    Loss(Box::new(move |x, state| single(0, law(x, state))))
+}
+
+/// A loss of joints with sizes by joint; `law` takes joint, speed and torque.
+fn by_joint(sizes: Row, law: impl Fn(&Seen, usize, f64, f64) -> f64 + 'static) -> Loss {
+    let of = move |x: &Seen, i: usize| match sizes[i] {
+        0.0 => 0.0,
+        size => size * law(x, i, x.v[i].abs(), x.tau[i].abs()),
+    };
+    Loss(Box::new(move |x, _| std::array::from_fn(|i| of(x, i))))
+}
+
+pub(super) fn draw(which: usize, m: &Means, rng: &mut Rng) -> (Truth, Loss) {
     // Base load and brakes are measured by the base load, losses by the rest.
-    let whole = if which > 3 { m.base } else { m.power.max(5.0) };
-    let size = whole * rng.log_between(0.08, 0.8);
+    let mean = if which > 3 { m.base } else { m.power.max(5.0) };
+    let size = mean * rng.log_between(0.08, 0.8);
     let second = rng.chance(0.5);
-    let mut p = [[0.0; 3]; MAX];
+    let n = m.n;
     match which {
         0 | 2 => of_joints(which, size, second, m, rng),
         1 => {
-            let level = (0..m.n).map(|i| m.torque[i].sqrt()).sum::<f64>().max(1e-6);
-            for (i, own) in p.iter_mut().enumerate().take(m.n) {
-                let rms = m.torque[i].sqrt().max(1e-6);
-                *own = [size / level, if second { 1.2 * rms } else { 4.0 * rms }, 0.0];
-            }
-            let (form, kind) = if second {
-                ("dead time", Kind::DeadTime)
+            let rms = m.torque.map(|square| square.sqrt().max(1e-6));
+            let size = size / (0..n).map(|i| m.torque[i].sqrt()).sum::<f64>().max(1e-6);
+            let sizes = std::array::from_fn(|i| if i < n { size } else { 0.0 });
+            let (form, loss) = if second {
+                let law = move |i: usize, torque: f64| {
+                    let full = 1.2 * rms[i];
+                    full * (torque / full).tanh()
+                };
+                ("dead time", by_joint(sizes, move |_, i, _, torque| law(i, torque)))
             } else {
-                ("conduction and switching", Kind::Switches)
+                let law = move |i: usize, torque: f64| torque + torque * torque / (4.0 * rms[i]);
+                ("conduction and switching", by_joint(sizes, move |_, i, _, torque| law(i, torque)))
             };
-            let fault = Fault::new("inverter_loss", form, &[], Action::Nothing);
-            (fault.own("per_current", None, size / level), Loss { kind, p })
+            let mut truth = Truth::new("inverter_loss", form, &[]);
+            truth.tell("per_current", None, size, false);
+            (truth, loss)
         }
         3 => {
-            p[0][0] = if second { 0.3 * m.braking } else { rng.between(0.05, 0.4) * m.braking };
-            let (form, kind) = if second {
-                ("braking power above a bound is burnt", Kind::Feeble)
+            let (form, loss) = if second {
+                let bound = 0.3 * m.braking;
+                let loss = whole(move |x, _| (x.given - bound).max(0.0));
+                ("braking power above a bound is burnt", loss)
             } else {
-                ("bus capacitor and chopper", Kind::Chopper)
+                let room = rng.between(0.05, 0.4) * m.braking;
+                // What would be given back goes to the capacitor, then to the resistor.
+                let loss = whole(move |x, state| {
+                    let energy = x.given * state.dt;
+                    let kept = energy.min((room - state.stored).max(0.0));
+                    state.stored += kept - state.stored * (state.dt / 0.5).min(1.0);
+                    (energy - kept) / state.dt
+                });
+                ("bus capacitor and chopper", loss)
             };
-            (Fault::new("no_regeneration", form, &[], Action::Nothing), Loss { kind, p })
+            (Truth::new("no_regeneration", form, &[]), loss)
         }
         4 => {
-            p[0] = if second {
-                [size, rng.between(0.4, 0.8), rng.between(7.0, 40.0)]
+            let (form, value, loss) = if second {
+                let (share, period) = (rng.between(0.4, 0.8), rng.between(7.0, 40.0));
+                let on = move |t: f64| (t / period).rem_euclid(1.0) < share;
+                let loss = whole(move |x, _| if on(x.t) { size } else { 0.0 });
+                ("fan with a thermostat", size * share, loss)
             } else {
-                [size, 0.05, 30.0]
+                let loss = whole(move |x, _| size * (1.0 + 0.05 * (x.t / 30.0).sin()));
+                ("slow drift", size, loss)
             };
-            let (form, kind) = if second {
-                ("fan with a thermostat", Kind::Fan)
-            } else {
-                ("slow drift", Kind::Base)
-            };
-            let value = if second { size * p[0][1] } else { size };
-            let fault = Fault::new("base_load", form, &[], Action::Nothing);
-            (fault.parameter("power", None, value, !second), Loss { kind, p })
+            let mut truth = Truth::new("base_load", form, &[]);
+            truth.tell("power", None, value, !second);
+            (truth, loss)
         }
         _ => {
-            p[0] = [size, rng.between(0.8, 2.0), 0.0];
-            let (form, kind) = if second {
-                ("coils of the moving axes", Kind::EachAxis)
-            } else {
-                ("pull-in", Kind::PullIn)
-            };
-            let fault = Fault::new("brake_power", form, &[], Action::Nothing);
-            (fault.parameter("power", None, size, !second), Loss { kind, p })
+            let pull = rng.between(0.8, 2.0);
+            let loss = whole(move |x, state| {
+                let moving = released(n, x.v, state);
+                if second {
+                    size * moving / n as f64
+                } else if moving > 0.0 {
+                    size * (1.0 + pull * (-state.open / PULL_IN).exp())
+                } else {
+                    0.0
+                }
+            });
+            let form = if second { "coils of the moving axes" } else { "pull-in" };
+            let mut truth = Truth::new("brake_power", form, &[]);
+            truth.tell("power", None, size, !second);
+            (truth, loss)
         }
     }
 }
 
-fn of_joints(which: usize, size: f64, second: bool, m: &Means, rng: &mut Rng) -> (Fault, Loss) {
-    let mut p = [[0.0; 3]; MAX];
+/// Copper loss of a winding that warms or with skin effect; iron loss of hysteresis and eddies, or
+/// excess loss.
+fn of_joints(which: usize, size: f64, second: bool, m: &Means, rng: &mut Rng) -> (Truth, Loss) {
     let wanted = rng.pick(&[1, 1, 2]);
     let mut joints: Vec<usize> = Vec::new();
     while joints.len() < wanted {
@@ -277,23 +235,32 @@ fn of_joints(which: usize, size: f64, second: bool, m: &Means, rng: &mut Rng) ->
         }
     }
     joints.sort_unstable();
-    let part = size / wanted as f64;
-    let (id, name, form, kind) = match (which, second) {
-        (0, false) => ("copper_loss", "loss", "winding that warms", Kind::WarmCopper),
-        (0, true) => ("copper_loss", "loss", "skin effect", Kind::SkinCopper),
-        (_, false) => ("iron_loss", "loss", "Bertotti", Kind::Bertotti),
-        (_, true) => ("iron_loss", "loss", "excess loss", Kind::Excess),
+    let (id, form) = match (which, second) {
+        (0, false) => ("copper_loss", "winding that warms"),
+        (0, true) => ("copper_loss", "skin effect"),
+        (_, false) => ("iron_loss", "Bertotti"),
+        (_, true) => ("iron_loss", "excess loss"),
     };
-    let mut fault = Fault::new(id, form, &joints, Action::Nothing);
+    let copper = which == 0;
+    let mut truth = Truth::new(id, form, &joints);
+    let (mut sizes, mut shapes) = ([0.0; MAX], [0.0; MAX]);
     for i in joints {
-        let (torque, speed) = (m.torque[i].max(1e-9), m.speed[i].max(1e-6));
-        p[i] = match kind {
-            Kind::WarmCopper => [part / torque, rng.between(0.05, 0.15), 100.0],
-            Kind::SkinCopper => [part / torque, 3.0 * speed.sqrt(), 0.0],
-            Kind::Bertotti => [part / speed * 0.75, 0.4 * speed.sqrt(), 0.0],
-            _ => [part / speed.powf(0.75), 0.0, 0.0],
+        let (part, speed) = (size / wanted as f64, m.speed[i].max(1e-6));
+        (sizes[i], shapes[i]) = match (copper, second) {
+            (true, false) => (part / m.torque[i].max(1e-9), rng.between(0.05, 0.15)),
+            (true, true) => (part / m.torque[i].max(1e-9), 3.0 * speed.sqrt()),
+            (false, false) => (part / speed * 0.75, 0.4 * speed.sqrt()),
+            (false, true) => (part / speed.powf(0.75), 0.0),
         };
-        fault = fault.parameter(name, Some(i), p[i][0], kind == Kind::WarmCopper);
+        truth.tell("loss", Some(i), sizes[i], copper && !second);
     }
-    (fault, Loss { kind, p })
+    let loss = by_joint(sizes, move |x, i, speed, torque| match (copper, second) {
+        (true, false) => {
+            torque * torque * (1.0 + shapes[i] * (1.0 - (-x.t.max(0.0) / 100.0).exp()))
+        }
+        (true, true) => torque * torque * (1.0 + (speed / shapes[i]).powi(2)),
+        (false, false) => speed * speed + shapes[i] * speed,
+        (false, true) => speed.powf(1.5),
+    });
+    (truth, loss)
 }

@@ -38,7 +38,6 @@ impl Meter<'_> {
     }
 }
 
-/// Means of a record.
 fn squares(record: &Record) -> (Row, Row) {
     let count = record.t.len().max(1) as f64;
     let (mut torque, mut speed) = ([0.0; MAX], [0.0; MAX]);
@@ -114,7 +113,7 @@ pub(super) fn case(seed: u64, number: usize) -> Case {
         n,
     };
     let (fault, loss) = power::draw(which, &means, &mut rng);
-    finish(&setup, &meter, &records, (fault.truth, &loss), &stream)
+    finish(&setup, &meter, &records, (fault, &loss), &stream)
 }
 
 /// Writes the logs and the truth.

@@ -262,7 +262,6 @@ fn average(rows: &[Row], half: usize) -> Vec<Row> {
     out
 }
 
-/// Central differences.
 fn slope(rows: &[Row]) -> Vec<Row> {
     let last = rows.len().saturating_sub(1);
     (0..rows.len())

@@ -9,7 +9,6 @@ use nalgebra::{Rotation3, SMatrix, SVector, Unit};
 /// Gravity \[m/s²\].
 pub(super) const GRAVITY: f64 = 9.81;
 
-/// Both bodies as one.
 pub(super) fn joined(a: &Body, b: &Body) -> Body {
     let mass = a.mass + b.mass;
     let com = (a.com * a.mass + b.com * b.mass) / mass;
@@ -53,7 +52,6 @@ pub(super) struct Pose {
 }
 
 impl Arm {
-    /// Number of joints.
     pub(super) fn n(&self) -> usize {
         self.joints.len()
     }

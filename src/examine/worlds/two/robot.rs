@@ -46,7 +46,6 @@ const DENSITY: f64 = 1500.0;
 const PAYLOAD: (f64, f64) = (0.5, 300.0);
 
 impl Robot {
-    /// What its file says.
     pub(super) fn sheet(&self) -> Sheet<'_> {
         Sheet {
             name: format!("{:?}-{:.1}kg", self.build, self.size.payload).to_lowercase(),
@@ -67,7 +66,6 @@ impl Robot {
     }
 }
 
-/// Draws a nominal robot.
 pub(super) fn draw(six_only: bool, rng: &mut Rng) -> Robot {
     let build = if !six_only && rng.chance(0.2) {
         Build::Seven

@@ -54,7 +54,6 @@ impl Path {
         self.sum = x.map(|value| value * self.steps.0 as f64);
     }
 
-    /// Steps the path.
     pub(super) fn step(&mut self, x: &Row, dt: f64) -> Row {
         let mut now = *x;
         for (state, pole) in self.state.iter_mut().zip(self.poles) {
@@ -115,7 +114,6 @@ pub(super) struct Part {
 }
 
 impl Part {
-    /// A law at rest.
     pub(super) fn new(
         joint: usize,
         law: impl Fn(f64, &Seen, &mut Memory) -> f64 + 'static,

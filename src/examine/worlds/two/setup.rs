@@ -29,7 +29,6 @@ impl Setup {
     }
 }
 
-/// Draws robot and file.
 pub(super) fn setup(
     always_baseline: bool,
     toml_only: bool,

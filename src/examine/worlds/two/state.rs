@@ -313,7 +313,6 @@ impl<'a> State<'a> {
         motors
     }
 
-    /// Integrates speeds, then angles.
     fn advance(&mut self, acceleration: &Row, flexible: &[Option<f64>; MAX]) {
         let (n, dt) = (self.arm.n(), self.now.dt);
         let mut shown = self.now.q;

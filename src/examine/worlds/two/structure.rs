@@ -54,7 +54,6 @@ const FLOW: f64 = 0.15;
 const GIVE: f64 = 0.05;
 
 impl Change {
-    /// Changes an arm.
     pub(super) fn apply(&self, arm: &mut Arm) {
         match self {
             Self::Add { link, body, now, .. } => add(arm, *link, body, now),
@@ -130,6 +129,7 @@ pub(super) struct Flex {
     pub(super) joint: usize,
     /// Stiffness \[Nm/rad\].
     pub(super) stiffness: f64,
+    /// Hardening: torque k·δ·(1 + hard·(δ/δ₀)²).
     pub(super) hard: f64,
     /// δ₀ \[rad\].
     pub(super) reference: f64,

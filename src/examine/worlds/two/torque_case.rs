@@ -12,7 +12,7 @@ use crate::examine::worlds::api::{Case, Kind, largest, options};
 use crate::examine::worlds::random::Rng;
 
 /// Ids of all effects of torques that are drawn as a fault.
-pub(super) fn ids() -> Vec<&'static str> {
+fn ids() -> Vec<&'static str> {
     let all = friction_faults::IDS.iter().chain(&drive_faults::IDS).chain(&body_faults::IDS);
     all.copied().collect()
 }

@@ -59,7 +59,7 @@ pub(super) fn payload(ctx: &Context, order: &Order, rng: &mut Rng) -> Fault {
     if order.form == 1 {
         let (omega, zeta) = (std::f64::consts::TAU * rng.log(JAWS), rng.uniform((0.1, 0.3)));
         for j in 0..=last {
-            fault.law(j, Oscillator { omega, zeta, drive: |x: &View| x.field });
+            fault.law(j, Oscillator::new(omega, zeta, |x| x.field));
         }
     } else {
         fault.loads = true;

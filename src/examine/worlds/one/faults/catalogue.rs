@@ -39,7 +39,6 @@ pub(in crate::examine::worlds::one) struct Entry {
     pub(in crate::examine::worlds::one) build: Builder,
 }
 
-/// An entry.
 const fn entry(id: &'static str, forms: usize, place: Place, build: Builder) -> Entry {
     Entry { id, forms, place, build }
 }
@@ -94,7 +93,6 @@ pub(in crate::examine::worlds::one) struct Choice {
     pub(in crate::examine::worlds::one) rng: Rng,
 }
 
-/// One to three joints.
 fn joints(place: Place, count: usize, rng: &mut Rng) -> Vec<usize> {
     match place {
         Place::Robot | Place::Wrist => return Vec::new(),
@@ -126,7 +124,6 @@ fn joints(place: Place, count: usize, rng: &mut Rng) -> Vec<usize> {
     out
 }
 
-/// Finishes a choice.
 fn choice(entry: &'static Entry, count: usize, rng: &mut Rng) -> Choice {
     let joints = joints(entry.place, count, rng);
     let form = rng.below(entry.forms);

@@ -1,7 +1,7 @@
 //! Forces from outside, and torques that only seem to be there.
 
 use super::super::dynamics::{jacobian, pose};
-use super::super::law::{Memory, View};
+use super::super::law::Memory;
 use super::super::motion::STRIDE;
 use super::friction::{SHARE, gate, window};
 use super::{Context, Fault, Moment, Order};
@@ -137,11 +137,11 @@ pub(super) fn apparent(ctx: &Context, order: &Order, rng: &mut Rng) -> Fault {
         if order.form == 0 {
             fault.law(
                 j,
-                Memory {
-                    lag: rng.uniform(DRIVE_LAG),
-                    input: move |x: &View| inertia * x.a + viscous * x.v,
-                    output: |_: &View, u: f64| u,
-                },
+                Memory::new(
+                    rng.uniform(DRIVE_LAG),
+                    move |x| inertia * x.a + viscous * x.v,
+                    |_, u| u,
+                ),
             );
         } else {
             let top = ctx.level.speed[j].max(0.01);

@@ -81,14 +81,8 @@ pub(super) fn stribeck(ctx: &Context, order: &Order, rng: &mut Rng) -> Fault {
         match order.form {
             0 => fault.torque(j, move |x| hess(x.v) * x.sign),
             1 => fault.torque(j, move |x| s * (-x.v.abs() / slow).exp() * x.sign),
-            _ => fault.law(
-                j,
-                Memory {
-                    lag: rng.log(FILM),
-                    input: |x: &View| x.v.abs(),
-                    output: move |x: &View, v: f64| hess(v) * x.sign,
-                },
-            ),
+            _ => fault
+                .law(j, Memory::new(rng.log(FILM), |x| x.v.abs(), move |x, v| hess(v) * x.sign)),
         }
         fault.truth.tell("stiction", Some(j), s, order.form != 2);
         fault.truth.tell("velocity", Some(j), slow, order.form == 1);
@@ -157,13 +151,11 @@ pub(super) fn load(ctx: &Context, order: &Order, rng: &mut Rng) -> Fault {
         match order.form {
             0 => fault.law(
                 j,
-                Memory {
-                    lag: rng.log(FILM),
-                    input: |x: &View| x.load,
-                    output: move |x: &View, l: f64| {
-                        mu * ((l * l + round * round).sqrt() - round) * x.sign
-                    },
-                },
+                Memory::new(
+                    rng.log(FILM),
+                    |x| x.load,
+                    move |x, l| mu * ((l * l + round * round).sqrt() - round) * x.sign,
+                ),
             ),
             1 => fault.torque(j, move |x| mu * (x.load.abs() - preload).max(0.0) * x.sign),
             // Rolling contact: friction grows less than in proportion.
@@ -290,20 +282,13 @@ pub(super) fn presliding(ctx: &Context, order: &Order, rng: &mut Rng) -> Fault {
             // The force is a root-like function of the bristle: stiff at first, then soft.
             0 => fault.law(
                 j,
-                Bouc {
-                    distance,
-                    shape: 1.0,
-                    output: move |x: &View, z: f64| {
-                        let soft = z * (1.25 - 0.25 * z * z);
-                        c * (soft - x.sign)
-                    },
-                },
+                Bouc::new(distance, 1.0, move |x, z| {
+                    let soft = z * (1.25 - 0.25 * z * z);
+                    c * (soft - x.sign)
+                }),
             ),
             1 => fault.law(j, Plastic { distance: 1.4 * distance, coulomb: c }),
-            _ => fault.law(
-                j,
-                Bouc { distance, shape: 0.8, output: move |x: &View, z: f64| c * (z - x.sign) },
-            ),
+            _ => fault.law(j, Bouc::new(distance, 0.8, move |x, z| c * (z - x.sign))),
         }
         fault.truth.tell("distance", Some(j), distance, order.form == 2);
     }

@@ -29,6 +29,12 @@ struct Twist<F> {
     target: F,
 }
 
+impl<F: Fn(f64, f64) -> f64> Twist<F> {
+    fn new(relaxation: f64, play: f64, target: F) -> Self {
+        Self { relaxation, play, target }
+    }
+}
+
 impl<F: Fn(f64, f64) -> f64> Law for Twist<F> {
     fn start(&self, x: &View) -> States {
         let twist = (self.target)(x.load, x.load);
@@ -96,22 +102,16 @@ pub(super) fn backlash(ctx: &Context, order: &Order, rng: &mut Rng) -> Fault {
             ),
             1 => fault.law(
                 j,
-                Twist {
-                    relaxation,
-                    play: 0.5 * width,
-                    target: move |_: f64, memory: f64| gap / PI * (memory / width).atan(),
-                },
+                Twist::new(relaxation, 0.5 * width, move |_, memory| {
+                    gap / PI * (memory / width).atan()
+                }),
             ),
             _ => fault.law(
                 j,
-                Twist {
-                    relaxation,
-                    play: width,
-                    target: move |load: f64, memory: f64| {
-                        let soft = |l: f64| l / (l.abs() + 0.7 * width);
-                        0.5 * gap * (0.6 * soft(load) + 0.4 * soft(memory))
-                    },
-                },
+                Twist::new(relaxation, width, move |load, memory| {
+                    let soft = |l: f64| l / (l.abs() + 0.7 * width);
+                    0.5 * gap * (0.6 * soft(load) + 0.4 * soft(memory))
+                }),
             ),
         }
         fault.truth.tell("gap", Some(j), gap, true);
@@ -133,36 +133,26 @@ pub(super) fn elasticity(ctx: &Context, order: &Order, rng: &mut Rng) -> Fault {
             // δ of k₁δ + k₃δ³ = τ, approximated by its own series inverted once.
             0 => fault.law(
                 j,
-                Twist {
-                    relaxation,
-                    play: 0.0,
-                    target: move |load: f64, _: f64| {
-                        1.25 * load / k / (1.0 + 0.6 * (load / peak).powi(2)).powf(0.45)
-                    },
-                },
+                Twist::new(relaxation, 0.0, move |load, _| {
+                    1.25 * load / k / (1.0 + 0.6 * (load / peak).powi(2)).powf(0.45)
+                }),
             ),
             1 => fault.law(
                 j,
-                Twist {
-                    relaxation,
-                    play: 0.0,
-                    target: move |load: f64, _: f64| {
-                        let l = load.abs();
-                        let (one, two) = (0.15 * peak, 0.5 * peak);
-                        let first = l.min(one) * 1.6;
-                        let second = (l - one).clamp(0.0, two - one) * 1.1;
-                        let third = (l - two).max(0.0) * 0.8;
-                        load.signum() * (first + second + third) / k
-                    },
-                },
+                Twist::new(relaxation, 0.0, move |load, _| {
+                    let l = load.abs();
+                    let (one, two) = (0.15 * peak, 0.5 * peak);
+                    let first = l.min(one) * 1.6;
+                    let second = (l - one).clamp(0.0, two - one) * 1.1;
+                    let third = (l - two).max(0.0) * 0.8;
+                    load.signum() * (first + second + third) / k
+                }),
             ),
             _ => fault.law(
                 j,
-                Twist {
-                    relaxation,
-                    play: 0.06 * peak,
-                    target: move |load: f64, memory: f64| (0.85 * load + 0.15 * memory) / k,
-                },
+                Twist::new(relaxation, 0.06 * peak, move |load, memory| {
+                    (0.85 * load + 0.15 * memory) / k
+                }),
             ),
         }
         fault.truth.tell("stiffness", Some(j), k, order.form == 2);
@@ -209,16 +199,14 @@ pub(super) fn rotor(ctx: &Context, order: &Order, rng: &mut Rng) -> Fault {
         if order.form == 0 {
             fault.law(
                 j,
-                Oscillator {
-                    omega: TAU * rng.log(BELT),
-                    zeta: rng.uniform((0.15, 0.5)),
-                    drive: move |x: &View| inertia * x.a,
-                },
+                Oscillator::new(TAU * rng.log(BELT), rng.uniform((0.15, 0.5)), move |x| {
+                    inertia * x.a
+                }),
             );
         } else {
             let lag = rng.uniform((0.003, 0.008));
             let output = move |x: &View, w: f64| inertia * (x.v - w) / lag;
-            fault.law(j, Memory { lag, input: |x: &View| x.v, output });
+            fault.law(j, Memory::new(lag, |x| x.v, output));
         }
         fault.truth.tell("inertia", Some(j), inertia, true);
     }

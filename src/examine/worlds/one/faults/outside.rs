@@ -75,7 +75,7 @@ fn mode(ctx: &Context, order: &Order, rng: &mut Rng) -> Fault {
         let k = another(ctx, j, rng);
         let c = 4.0 * amount(ctx, order, j, rng) / ctx.level.acceleration[k].max(0.01);
         let (omega, zeta) = (TAU * rng.log(MODE), rng.log((0.01, 0.06)));
-        fault.law_with(j, k, Oscillator { omega, zeta, drive: move |x: &View| c * x.other_a });
+        fault.law_with(j, k, Oscillator::new(omega, zeta, move |x| c * x.other_a));
     }
     fault
 }
@@ -109,7 +109,6 @@ impl Law for Sliding {
     }
 }
 
-/// Builds a sliding mass.
 fn sliding(ctx: &Context, order: &Order, rng: &mut Rng) -> Fault {
     let mut fault = Fault::new("outside", "sliding_mass", order.joints);
     for &j in order.joints {
@@ -198,7 +197,7 @@ fn ringing(ctx: &Context, order: &Order, rng: &mut Rng) -> Fault {
         let c = 2.0 * amount(ctx, order, j, rng);
         let (omega, zeta) = (TAU * rng.log(MODE), rng.log((0.02, 0.08)));
         // The mode's answer to the direction, less the direction itself.
-        fault.law(j, Oscillator { omega, zeta, drive: move |x: &View| c * x.sign });
+        fault.law(j, Oscillator::new(omega, zeta, move |x| c * x.sign));
         fault.torque(j, move |x| -c * x.sign);
     }
     fault
@@ -218,7 +217,7 @@ fn pendulum(ctx: &Context, order: &Order, rng: &mut Rng) -> Fault {
     }));
     let (omega, zeta) = (TAU * rng.uniform((0.6, 1.4)), rng.uniform((0.02, 0.1)));
     for j in 0..=last {
-        fault.law(j, Oscillator { omega, zeta, drive: |x: &View| x.field });
+        fault.law(j, Oscillator::new(omega, zeta, |x| x.field));
     }
     fault
 }

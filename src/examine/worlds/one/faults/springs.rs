@@ -1,6 +1,6 @@
 //! Springs, balancers, cables and offsets.
 
-use super::super::law::{Bouc, Memory, View};
+use super::super::law::{Bouc, Memory};
 use super::friction::amount;
 use super::{Context, Fault, Order};
 use crate::examine::worlds::random::Rng;
@@ -40,11 +40,9 @@ pub(super) fn gravity(ctx: &Context, order: &Order, rng: &mut Rng) -> Fault {
             }),
             _ => fault.law(
                 j,
-                Bouc {
-                    distance: 0.05 * half,
-                    shape: 0.7,
-                    output: move |x: &View, z: f64| k * (x.q - centre) + 0.06 * k.abs() * half * z,
-                },
+                Bouc::new(0.05 * half, 0.7, move |x, z| {
+                    k * (x.q - centre) + 0.06 * k.abs() * half * z
+                }),
             ),
         }
         fault.truth.tell("stiffness", Some(j), k, order.form == 2);
@@ -67,11 +65,7 @@ pub(super) fn cable(ctx: &Context, order: &Order, rng: &mut Rng) -> Fault {
         match order.form {
             0 => fault.law(
                 j,
-                Bouc {
-                    distance,
-                    shape: 0.6,
-                    output: move |x: &View, z: f64| k * (x.q - centre) + 0.2 * k * half * z,
-                },
+                Bouc::new(distance, 0.6, move |x, z| k * (x.q - centre) + 0.2 * k * half * z),
             ),
             1 => fault.torque(j, move |x| {
                 // Softly taut on both sides of the slack.
@@ -99,15 +93,8 @@ pub(super) fn offset(ctx: &Context, order: &Order, rng: &mut Rng) -> Fault {
     for &j in order.joints {
         let c = amount(ctx, order, j, rng) * rng.sign();
         match order.form {
-            0 => fault.law(
-                j,
-                Memory {
-                    // Friction of the two directions differs: c with the sign of motion, built up softly.
-                    lag: 0.01,
-                    input: |x: &View| x.sign,
-                    output: move |_: &View, z: f64| c * z.abs().min(1.0),
-                },
-            ),
+            // Friction of the two directions differs: c with the sign of motion, built up softly.
+            0 => fault.law(j, Memory::new(0.01, |x| x.sign, move |_, z| c * z.abs().min(1.0))),
             1 => fault.torque(j, move |x| c * (1.0 - 0.12 * (-x.t / wave).exp())),
             _ => fault.torque(j, move |x| {
                 c * (1.0 + 0.08 * (std::f64::consts::TAU * x.t / wave + phase).sin())
