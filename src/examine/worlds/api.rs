@@ -41,6 +41,14 @@ pub(super) struct Case {
     pub(super) heldout: Vec<HeldOut>,
 }
 
+impl Case {
+    /// A case in which nothing is wrong; the robot's file is the first.
+    pub(super) fn new(files: Vec<(String, String)>, options: Value, kind: Kind) -> Self {
+        let (effects, lines, heldout) = (Vec::new(), Vec::new(), Vec::new());
+        Self { files, options, kind, effects, place: None, lines, heldout }
+    }
+}
+
 /// Expected log-likelihood ratio \[nats\] of a fault, `½ Δᵀ(Σ + BBᵀ)⁻¹Δ`.
 ///
 /// By joint: `delta` is what the fault changes in the mean of the repetitions, all logs behind one

@@ -279,15 +279,8 @@ pub(super) fn make(plan: &Plan) -> Case {
         let motion = run(arm, &home, &day, tuning, cycles);
         files.push((name.to_owned(), recorder.csv(&motion.rows, TICK, &mut own)));
     }
-    let mut case = Case {
-        options: program_options(&files[0].0, plan.spread.trust),
-        files,
-        kind: Kind::Healthy,
-        effects: Vec::new(),
-        place: None,
-        lines: Vec::new(),
-        heldout: Vec::new(),
-    };
+    let options = program_options(&files[0].0, plan.spread.trust);
+    let mut case = Case::new(files, options, Kind::Healthy);
     if let (Some(fault), Some(faulty)) = (&fault, &faulty) {
         let with = run(arm, &home, &moves, faulty, 1);
         case.kind = Kind::Motion;

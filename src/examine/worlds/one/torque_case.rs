@@ -276,13 +276,6 @@ fn finish(scene: &Scene, bench: &Bench, mut faults: Vec<Fault>) -> Case {
     effects.extend(electric.map(|e| e.truth(scene, bench)));
     let first = scene.stage(0).track;
     let period = (first.cycles > 1 && scene.plan.period_told).then(|| neat(first.period()));
-    Case {
-        options: options(&files[0].0, scene.plan.spread.trust, period),
-        files,
-        kind: scene.plan.kind,
-        effects,
-        place,
-        lines: Vec::new(),
-        heldout,
-    }
+    let options = options(&files[0].0, scene.plan.spread.trust, period);
+    Case { effects, place, heldout, ..Case::new(files, options, scene.plan.kind) }
 }

@@ -172,15 +172,8 @@ pub(super) fn case(seed: u64, number: usize) -> Case {
     for k in 1..=rng.whole(1, 2) {
         add(format!("baseline-{k}.csv"), &before, cycles);
     }
-    let mut case = Case {
-        options: program_options(&files[0].0, "commissioned"),
-        files,
-        kind: Kind::Healthy,
-        effects: Vec::new(),
-        place: None,
-        lines: Vec::new(),
-        heldout: Vec::new(),
-    };
+    let options = program_options(&files[0].0, "commissioned");
+    let mut case = Case::new(files, options, Kind::Healthy);
     if let Some(fault) = wrong {
         case.kind = Kind::Motion;
         case.lines = fault.at.iter().map(|k| of_moves[*k]).collect();

@@ -200,15 +200,6 @@ pub(super) fn case(seed: u64, number: usize) -> Case {
     for (k, taken) in before.iter().enumerate() {
         add(format!("baseline-{}.csv", k + 1), taken, None);
     }
-    let gap = heldout(&setting.world, &setting.heldout, &[]);
-    let options = setting.options();
-    Case {
-        files,
-        options,
-        kind: Kind::Power,
-        effects: vec![truth],
-        place: None,
-        lines: Vec::new(),
-        heldout: gap,
-    }
+    let heldout = heldout(&setting.world, &setting.heldout, &[]);
+    Case { effects: vec![truth], heldout, ..Case::new(files, setting.options(), Kind::Power) }
 }

@@ -227,16 +227,8 @@ pub(super) fn case(seed: u64, number: usize, kind: Kind) -> Case {
     let effects = truths(&setting, &faults, &series);
     let gap = heldout(&setting.world, &setting.heldout, &faults);
     let squares: Vec<f64> = gap.iter().map(|row| row.effects * row.effects).collect();
-    let options = setting.options();
-    Case {
-        files,
-        options,
-        kind,
-        place: largest(&squares),
-        effects,
-        lines: Vec::new(),
-        heldout: gap,
-    }
+    let place = largest(&squares);
+    Case { place, effects, heldout: gap, ..Case::new(files, setting.options(), kind) }
 }
 
 /// All files of a case.

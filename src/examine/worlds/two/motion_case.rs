@@ -214,15 +214,8 @@ pub(super) fn case(seed: u64, number: usize) -> Case {
         let (_, csv) = bench.log(&planned, &Servo::default(), &mut noise);
         files.push((format!("baseline-{}.csv", k + 1), csv));
     }
-    let mut case = Case {
-        options: program_options(&files[0].0, setup.spread.trust),
-        files,
-        kind: Kind::Healthy,
-        effects: Vec::new(),
-        place: None,
-        lines: Vec::new(),
-        heldout: Vec::new(),
-    };
+    let options = program_options(&files[0].0, setup.spread.trust);
+    let mut case = Case::new(files, options, Kind::Healthy);
     if !healthy {
         case.kind = Kind::Motion;
         let at = shown(&fault, &planner, &program);

@@ -139,14 +139,13 @@ fn finish(
     }
     fault.nats = information(meter, records, loss);
     let shares = power(&plant.robot, &meter.everyday, Some(loss), &records[0], plan.rate).2;
+    let told = told(plan, &mut stream("options"));
+    let options = options(&files[0].0, setup.spread.trust, told);
     Case {
-        options: options(&files[0].0, setup.spread.trust, told(plan, &mut stream("options"))),
-        files,
-        kind: Kind::Power,
         place: if fault.joints.is_empty() { None } else { largest(&shares) },
         effects: vec![fault],
-        lines: Vec::new(),
         heldout: truth::levels(plant, &setup.in_file, &held),
+        ..Case::new(files, options, Kind::Power)
     }
 }
 

@@ -129,13 +129,12 @@ pub(super) fn case(seed: u64, number: usize, kind: Kind, forced: Option<&str>) -
     for (fault, nats) in faults.iter_mut().zip(nats) {
         fault.truth.nats = nats;
     }
+    let told = told(&plan, &mut stream("options"));
+    let options = options(&files[0].0, setup.spread.trust, told);
     Case {
-        options: options(&files[0].0, setup.spread.trust, told(&plan, &mut stream("options"))),
-        files,
-        kind,
         effects: faults.into_iter().map(|fault| fault.truth).collect(),
         place: largest(&truth::squares(n, &records)),
-        lines: Vec::new(),
         heldout: truth::levels(&plant, &setup.in_file, &held),
+        ..Case::new(files, options, kind)
     }
 }
