@@ -17,7 +17,6 @@ mod plan;
 mod plant;
 mod power_case;
 mod profile;
-
 mod scene;
 mod torque_case;
 mod truth;

@@ -29,7 +29,6 @@ mod signal;
 mod spatial;
 #[cfg(test)]
 mod tests;
-
 mod torque_case;
 mod truth;
 

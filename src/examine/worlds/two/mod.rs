@@ -26,7 +26,6 @@ mod structure;
 mod terms;
 #[cfg(test)]
 mod tests;
-
 mod torque_case;
 mod truth;
 
