@@ -82,7 +82,9 @@ fn each_kind_is_complete(world: World) {
         let model = loaded(robot, file(robot));
         assert_eq!(options["trust"].as_str().unwrap(), case.label.trust);
         let kind = case.label.kind;
-        for (name, text) in case.files.iter().filter(|(name, _)| name.ends_with(".csv")) {
+        let is_log =
+            |name: &str| ["log-", "heldout", "baseline-"].iter().any(|of| name.starts_with(of));
+        for (name, text) in case.files.iter().filter(|(name, _)| is_log(name)) {
             let log = read_csv(text.as_bytes(), &ColumnMap::default()).unwrap();
             let has = |channel| log.column(channel).is_some();
             let torques = (0..model.dof).all(|joint| has(Channel::Torque(joint)));
