@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, bail};
-use clap::{Args, Subcommand};
+use clap::{Args, Subcommand, ValueEnum};
 use serde_json::{Value, json};
 
 use self::cases::write_cases;
@@ -18,6 +18,7 @@ use self::family::family;
 use super::common::{self, Format};
 use super::{diagnose, output};
 use crate::examine::blind::{self, Asked, FAMILY, Grades, KEY, Label, SEALS, Sealed, Settings};
+use crate::examine::worlds::{self, World};
 use crate::tool::report::html::grades_report;
 
 /// The sealed examination of diagnose: generate cases, grade their diagnoses.
@@ -54,6 +55,10 @@ struct GenerateArgs {
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=9999))]
     count: u32,
 
+    /// Another simulator, with robots, motions and logs of its own.
+    #[arg(long, value_enum, ignore_case = true, conflicts_with_all = ["cycles", "period"])]
+    world: Option<WorldArg>,
+
     /// Periods in each log.
     #[arg(long, value_name = "N", default_value_t = 7, value_parser = clap::value_parser!(u32).range(2..=100))]
     cycles: u32,
@@ -65,6 +70,20 @@ struct GenerateArgs {
     /// No notes and no progress on standard error.
     #[arg(long, short)]
     quiet: bool,
+}
+
+/// A simulator that shares no formula with the others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum WorldArg {
+    /// States of friction and gears along a prescribed motion of the links.
+    #[value(name = "A")]
+    A,
+    /// Closed loop of forward dynamics and controller.
+    #[value(name = "B")]
+    B,
+    /// Motors in electrical quantities; coupled wrists.
+    #[value(name = "C")]
+    C,
 }
 
 /// Open the seals and grade the diagnoses of the cases.
@@ -106,6 +125,16 @@ pub(super) fn run(args: &BlindArgs) -> anyhow::Result<ExitCode> {
 
 fn generate(args: &GenerateArgs) -> anyhow::Result<ExitCode> {
     let out = &args.out;
+    if let Some(world) = args.world {
+        let world = match world {
+            WorldArg::A => World::A,
+            WorldArg::B => World::B,
+            WorldArg::C => World::C,
+        };
+        return write_cases(out, args.count, args.quiet, |number| {
+            Ok(worlds::case(world, args.seed, number))
+        });
+    }
     if !(PERIODS_S[0]..=PERIODS_S[1]).contains(&args.period) {
         bail!("--period {}: give {} to {} s", args.period, PERIODS_S[0], PERIODS_S[1]);
     }

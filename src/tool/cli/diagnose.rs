@@ -134,7 +134,7 @@ pub(super) fn diagnose_case(
 ) -> anyhow::Result<Value> {
     let text = |key: &str| options.get(key).and_then(Value::as_str);
     let args = DiagnoseArgs {
-        robot: case.join("nominal.toml").display().to_string(),
+        robot: case.join(text("robot").unwrap_or("nominal.toml")).display().to_string(),
         log: numbered(case, "log"),
         heldout: numbered(case, "heldout"),
         baseline: numbered(case, "baseline"),
