@@ -105,6 +105,7 @@ fn all<'m>(model: &'m Model, logs: &[&Samples]) -> Vec<Record<'m>> {
 }
 
 /// Diagnoses the records `train`, graded by `held`.
+#[cfg(feature = "internals")]
 #[must_use]
 pub fn diagnose(
     model: &Model,

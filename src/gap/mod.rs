@@ -22,7 +22,9 @@ mod tunables;
 pub use data::{Record, RecordKind, common_factor};
 pub use decision::{Entry, Estimated, Finding, Gate, Place, Remainder, Verdict};
 
-pub use diagnose::{Logs, Settings, diagnose, diagnose_logs};
+#[cfg(feature = "internals")]
+pub use diagnose::diagnose;
+pub use diagnose::{Logs, Settings, diagnose_logs};
 pub use diagnosis::Diagnosis;
 pub use grade::{
     Attribution, Budget, Cell, Interval, JointGap, PARAMETERS, Profile, Quantity, Shape, Shrink,

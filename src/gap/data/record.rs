@@ -44,8 +44,7 @@ pub enum RecordKind {
 pub struct Record<'a> {
     /// What it is of.
     pub kind: RecordKind,
-    /// When repetitions began, by the clock of all logs \[s\], and their weights in the record.
-    /// The motion's own time begins at 0.
+    /// When repetitions began after the first one \[s\], and their weights in the record.
     pub times: Vec<(f64, f64)>,
     /// The motion, with the torques by which laws go.
     pub motion: Motion<'a>,
@@ -96,21 +95,19 @@ impl<'a> Record<'a> {
                 (Some(period), Some(cutoff)) => filtered(block, samples.step, period, cutoff),
                 _ => [block.q.clone(), block.qd.clone(), block.qdd.clone()],
             };
-            let begins = block.t.first().copied().unwrap_or(0.0);
-            let t = block.t.iter().map(|t| t - begins).collect();
             // Rows that are left out have a sense all the same: a filter spreads their friction.
             let still = |rest: &f64| if cutoff.is_some() { STILL * rest } else { *rest };
             let slow: Vec<f64> = rest.iter().map(still).collect();
-            let mut motion = Motion::new(model, t, series, &slow, period.is_some());
+            let mut motion = Motion::new(model, block.t.clone(), series, &slow, period.is_some());
             // What the model lists of the whole motion is the model's.
             let of_motion = of_the_whole_motion(&motion);
             for (to, added) in motion.torque.iter_mut().zip(of_motion) {
                 to.iter_mut().zip(added).for_each(|(to, x)| *to += x);
             }
             let used = Used::new(&motion, &rest, highest, cutoff);
-            let clock = [begins, period.unwrap_or(0.0)];
             let spread = samples.repetitions.as_deref();
-            let of_mean = Record::mean(motion, used, block.tau.clone(), spread, clock);
+            let of_mean =
+                Record::mean(motion, used, block.tau.clone(), spread, period.unwrap_or(0.0));
             let drift = spread
                 .filter(|all| all.first().is_some_and(|of| of.len() >= TO_DRIFT))
                 .map(|spread| of_mean.drift(spread));
@@ -162,7 +159,7 @@ impl<'a> Record<'a> {
         used: Used,
         measured: Vec<Vec<f64>>,
         spread: Option<&[Vec<Vec<f64>>]>,
-        [begins, period]: [f64; 2],
+        period: f64,
     ) -> Record<'a> {
         let repetitions = spread.and_then(<[_]>::first).map_or(1, Vec::len).max(1);
         let share = 1.0 / repetitions as f64;
@@ -183,7 +180,7 @@ impl<'a> Record<'a> {
         });
         Record {
             kind: RecordKind::Mean,
-            times: (0..repetitions).map(|k| (begins + period * k as f64, share)).collect(),
+            times: (0..repetitions).map(|k| (period * k as f64, share)).collect(),
             power: power.collect(),
             modelled: motion.torque.clone(),
             motion,

@@ -6,7 +6,7 @@
 use super::shape::{Move, climbed, lowest};
 use crate::arm::effects::Effect;
 use crate::gap::data::Record;
-use crate::gap::design::{Clock, Design, PieceRows, Times, Whole};
+use crate::gap::design::{Design, PieceRows, Times, Whole};
 use crate::gap::posterior::Gains;
 
 /// Parts of a repetition at which windows begin and end, and their lengths in parts.
@@ -22,8 +22,9 @@ pub(super) struct Windows {
     whole: Whole,
     /// Duration of a part \[s\].
     part: f64,
-    /// By clock, what acts in each part.
-    parts: Vec<(Times, PieceRows)>,
+    times: Times,
+    /// What acts in each part.
+    parts: PieceRows,
 }
 
 impl Windows {
@@ -36,27 +37,13 @@ impl Windows {
     ) -> Option<Windows> {
         let first = records.first()?;
         let whole = Whole::new(records, effect, joint)?;
-        let part = first.duration() / PARTS as f64;
-        let period = if first.motion.closed { first.duration() } else { 0.0 };
-        // Both clocks are the same where all logs begin at the same part of the period.
-        let phase = |record: &Record<'_>| {
-            let begins = record.times.first().map_or(0.0, |(begins, _)| *begins);
-            if period > 0.0 { begins.rem_euclid(period) } else { begins }
-        };
-        let begins = phase(first);
-        let is_same = |record: &Record<'_>| (phase(record) - begins).abs() < 0.1 * part;
-        let clocks: &[Clock] = if records.iter().all(is_same) && begins < 0.1 * part {
-            &[Clock::Absolute]
-        } else {
-            &[Clock::Absolute, Clock::Log]
-        };
-        let choices = PARTS * LENGTHS.len() * clocks.len();
-        let of_clock = |clock: &Clock| {
-            let times = Times { period, clock: *clock, choices };
-            (times, whole.parts(design, records, (part, PARTS), &times))
-        };
-        let parts = clocks.iter().map(of_clock).collect();
-        Some(Windows { whole, part, parts })
+        let closed = first.motion.closed;
+        let [begins, ends] = if closed { [0.0, first.duration()] } else { range(records) };
+        let part = (ends - begins) / PARTS as f64;
+        let period = if closed { ends } else { 0.0 };
+        let times = Times { begins, period, choices: PARTS * LENGTHS.len() };
+        let parts = whole.parts(design, records, (part, PARTS), &times);
+        Some(Windows { whole, part, times, parts })
     }
 
     /// The best windows beside a fit.
@@ -69,7 +56,7 @@ impl Windows {
         let limits = [lowest(records), f64::INFINITY];
         let mut best: Vec<PieceRows> = Vec::new();
         for below in limits {
-            for (times, window) in self.starts(gains, below) {
+            for window in self.starts(gains, below) {
                 let within = |shape: &[f64]| {
                     let mut shape = shape.to_vec();
                     let n = shape.len();
@@ -77,9 +64,9 @@ impl Windows {
                     if let Some((k, most)) = self.whole.rise() {
                         shape[k] = shape[k].clamp(0.0, most);
                     }
-                    self.whole.within(design, records, shape, &times)
+                    self.whole.within(design, records, shape, &self.times)
                 };
-                let piece = within(&self.whole.shape(window, &times));
+                let piece = within(&self.whole.shape(window, &self.times));
                 let n = piece.shape.len();
                 let by = |coordinate, step| Move { coordinate, step, is_factor: false };
                 let mut moves = vec![by(n - 3, 0.5 * self.part), by(n - 2, 0.5 * self.part)];
@@ -98,31 +85,32 @@ impl Windows {
     }
 
     /// Windows that begin and end with parts and explain most, apart from each other.
-    fn starts(&self, gains: &Gains<'_>, below: f64) -> Vec<(Times, [f64; 2])> {
-        let mut all: Vec<(f64, Times, [usize; 2])> = Vec::new();
-        for (times, parts) in &self.parts {
-            let windows: Vec<[usize; 2]> = LENGTHS
-                .iter()
-                .flat_map(|length| (0..PARTS).map(move |begin| [begin, begin + length]))
-                .filter(|[_, end]| times.period > 0.0 || *end <= PARTS)
-                .collect();
-            let of_windows = gains.of_sums(parts, PARTS, &windows, below);
-            all.extend(of_windows.into_iter().zip(windows).map(|(gain, of)| (gain, *times, of)));
-        }
+    fn starts(&self, gains: &Gains<'_>, below: f64) -> Vec<[f64; 2]> {
+        let windows: Vec<[usize; 2]> = LENGTHS
+            .iter()
+            .flat_map(|length| (0..PARTS).map(move |begin| [begin, begin + length]))
+            .filter(|[_, end]| self.times.period > 0.0 || *end <= PARTS)
+            .collect();
+        let of_windows = gains.of_sums(&self.parts, PARTS, &windows, below);
+        let mut all: Vec<(f64, [usize; 2])> = of_windows.into_iter().zip(windows).collect();
         all.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let mut best: Vec<(Times, [usize; 2])> = Vec::new();
-        for (gain, times, [a, b]) in all {
-            if best.len() == STARTS || gain < LEAST + (times.choices as f64).ln() {
-                break;
-            }
-            let is_apart = |(_, [c, d]): &(Times, [usize; 2])| {
-                2 * b.min(*d).saturating_sub(a.max(*c)) <= (b - a).min(d - c)
-            };
-            if best.iter().all(is_apart) {
-                best.push((times, [a, b]));
+        let least = LEAST + (self.times.choices as f64).ln();
+        let mut best: Vec<[usize; 2]> = Vec::new();
+        for (_, [a, b]) in all.into_iter().take_while(|(gain, _)| *gain > least) {
+            let is_apart =
+                |[c, d]: &[usize; 2]| 2 * b.min(*d).saturating_sub(a.max(*c)) <= (b - a).min(d - c);
+            if best.len() < STARTS && best.iter().all(is_apart) {
+                best.push([a, b]);
             }
         }
-        let of = |k: usize| self.part * k as f64;
-        best.into_iter().map(|(times, window)| (times, window.map(of))).collect()
+        best.into_iter()
+            .map(|window| window.map(|k| self.times.begins + self.part * k as f64))
+            .collect()
     }
+}
+
+/// The first and the last time of records \[s\].
+fn range(records: &[Record<'_>]) -> [f64; 2] {
+    let times = || records.iter().flat_map(|record| &record.motion.t).copied();
+    [times().fold(f64::INFINITY, f64::min), times().fold(f64::NEG_INFINITY, f64::max)]
 }

@@ -31,17 +31,6 @@ pub struct PieceRows {
     pub prior: Vec<(f64, f64)>,
     /// Joints that it reaches, with their rows.
     pub rows: Vec<(usize, DMatrix<f64>)>,
-    /// The clock of its window, if it has one.
-    pub clock: Clock,
-}
-
-/// The time by which a window comes again.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Clock {
-    /// That of the logs' columns `t`.
-    Absolute,
-    /// Each log begins at 0.
-    Log,
 }
 
 /// An effect that acts all the time, to be cut to windows.
@@ -126,11 +115,12 @@ impl Whole {
         times: &Times,
     ) -> PieceRows {
         let of_part = |k: usize| {
-            let acting = move |t: f64| f64::from(u8::from((t / part) as usize == k));
+            let acting =
+                move |t: f64| f64::from(u8::from(((t - times.begins) / part) as usize == k));
             self.columns.iter().map(move |column| cut(column, records, times, &acting))
         };
         let columns = (0..count).flat_map(of_part).collect();
-        let shape = self.shape([0.0, part * count as f64], times);
+        let shape = self.shape([times.begins, times.begins + part * count as f64], times);
         self.piece(design, records, columns, shape, times)
     }
 
@@ -143,17 +133,17 @@ impl Whole {
         times: &Times,
     ) -> PieceRows {
         let piece = Piece { joint: self.joint, shape, choices: times.choices, columns };
-        PieceRows { clock: times.clock, ..to_rows(design, records, self.effect, piece) }
+        to_rows(design, records, self.effect, piece)
     }
 }
 
 /// How windows come again.
 #[derive(Clone, Copy)]
 pub(in crate::gap) struct Times {
+    /// When the first one may begin \[s\].
+    pub begins: f64,
     /// Time after which they do \[s\]; 0: never.
     pub period: f64,
-    /// By which time.
-    pub clock: Clock,
     /// Number of windows that are tried.
     pub choices: usize,
 }
@@ -166,11 +156,8 @@ fn cut(
     acting: &dyn Fn(f64) -> f64,
 ) -> Column {
     let of_record = |(record, series): (&Record<'_>, &Vec<(usize, Vec<f64>)>)| {
-        let begins = record.times.first().map_or(0.0, |(begins, _)| *begins);
-        let offset = if times.clock == Clock::Absolute { begins } else { 0.0 };
         let at = |t: &f64| {
-            let t = t + offset;
-            if times.period > 0.0 { t.rem_euclid(times.period) } else { t }
+            if times.period > 0.0 { t.rem_euclid(times.period) } else { *t }
         };
         let shares: Vec<f64> = record.motion.t.iter().map(|t| acting(at(t))).collect();
         let of = |(joint, series): &(usize, Vec<f64>)| {
@@ -243,7 +230,6 @@ pub(in crate::gap) fn link_pieces(design: &Design, effect: &'static Effect) -> P
                 own: RIGID,
                 prior: vec![(0.0, 1.0); RIGID],
                 rows: rows.collect(),
-                clock: Clock::Log,
             }
         })
         .collect()
@@ -456,6 +442,5 @@ fn to_rows(
         own: piece.columns.len(),
         prior: piece.columns.iter().map(|column| (column.mean, column.sd)).collect(),
         rows,
-        clock: Clock::Log,
     }
 }
