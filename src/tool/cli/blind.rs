@@ -3,6 +3,7 @@
 mod cases;
 mod family;
 mod inject;
+mod sensitivity;
 
 use std::fmt::Write as _;
 use std::fs;
@@ -37,6 +38,7 @@ enum BlindCommand {
     Generate(GenerateArgs),
     Inject(inject::InjectArgs),
     Grade(GradeArgs),
+    Sensitivity(sensitivity::SensitivityArgs),
 }
 
 /// Write cases: nominal models with logs, the truth sealed beside them.
@@ -120,6 +122,7 @@ pub(super) fn run(args: &BlindArgs) -> anyhow::Result<ExitCode> {
         BlindCommand::Generate(args) => generate(args),
         BlindCommand::Inject(args) => inject::run(args),
         BlindCommand::Grade(args) => grade(args),
+        BlindCommand::Sensitivity(args) => sensitivity::run(args),
     }
 }
 
@@ -151,9 +154,7 @@ fn generate(args: &GenerateArgs) -> anyhow::Result<ExitCode> {
 }
 
 fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {
-    let sealed =
-        Sealed { seals: read(&args.cases.join(SEALS))?, key: read(&args.cases.join(KEY))? };
-    let labels = blind::open(&sealed)?;
+    let labels = labels(&args.cases)?;
     let folders = labels.iter().filter_map(|label| fs::read_dir(args.cases.join(&label.case)).ok());
     let files = folders.flatten().flatten().map(|entry| entry.path());
     let read_files: Vec<PathBuf> =
@@ -172,10 +173,6 @@ fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {
     }
     let (mut graded, mut diagnoses) = (Vec::new(), Vec::new());
     for label in &labels {
-        // A case name must not lead out of the folder.
-        if label.case.contains(['/', '\\']) || label.case.starts_with('.') {
-            bail!("{KEY}: '{}' is not a case name; use the file that was generated", label.case);
-        }
         let without = without(label, args.leave_out.as_deref());
         if args.leave_out.is_some() && without.is_empty() {
             continue;
@@ -204,6 +201,25 @@ fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {
     common::print(args.format, || json!(grades), || table(&grades))
 }
 
+/// The unsealed labels of a folder.
+fn labels(cases: &Path) -> anyhow::Result<Vec<Label>> {
+    let sealed = Sealed { seals: read(&cases.join(SEALS))?, key: read(&cases.join(KEY))? };
+    let labels = blind::open(&sealed)?;
+    // A case name must not lead out of the folder.
+    let leads_out =
+        |label: &&Label| label.case.contains(['/', '\\']) || label.case.starts_with('.');
+    if let Some(label) = labels.iter().find(leads_out) {
+        bail!("{KEY}: '{}' is not a case name; use the file that was generated", label.case);
+    }
+    Ok(labels)
+}
+
+/// The options of a case.
+fn options(case: &Path) -> anyhow::Result<Value> {
+    serde_json::from_str(&read(&case.join("case.json"))?)
+        .with_context(|| format!("'{}' has no case.json", case.display()))
+}
+
 /// The effects that are left out for a case; empty if the case is not graded.
 fn without<'a>(label: &'a Label, left_out: Option<&'a str>) -> Vec<&'a str> {
     match left_out {
@@ -216,9 +232,7 @@ fn without<'a>(label: &'a Label, left_out: Option<&'a str>) -> Vec<&'a str> {
 
 /// The JSON of `diagnose` for a case without some effects; stored as `name` in the case folder.
 fn diagnosis_of_case(case: &Path, name: &str, without: &[&str]) -> anyhow::Result<Value> {
-    let options: Value = serde_json::from_str(&read(&case.join("case.json"))?)
-        .with_context(|| format!("'{}' has no case.json", case.display()))?;
-    let value = diagnose::diagnose_case(case, &options, without)
+    let value = diagnose::diagnose_case(case, &options(case)?, without)
         .with_context(|| case.display().to_string())?;
     // A cache for the next grading.
     let text = format!("{value:#}\n");

@@ -116,7 +116,7 @@ enum TrustArg {
 }
 
 pub(super) fn run(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
-    let (found, basis) = run_diagnosis(args)?;
+    let (found, basis) = run_diagnosis(args, &Tunables::DEFAULT)?;
     let text = || {
         let trail = if args.explain { report::trail(&found) } else { String::new() };
         report::text(&found, &basis) + &trail
@@ -132,25 +132,44 @@ pub(super) fn diagnose_case(
     options: &Value,
     without: &[&str],
 ) -> anyhow::Result<Value> {
-    let text = |key: &str| options.get(key).and_then(Value::as_str);
     let args = DiagnoseArgs {
+        effects: (!without.is_empty()).then(|| format!("-{}", without.join(","))),
+        out: without.is_empty().then(|| case.join("improved.toml")),
+        ..of_case(case, options)
+    };
+    let (found, basis) = run_diagnosis(&args, &Tunables::DEFAULT)?;
+    Ok(report::json(&found, &basis))
+}
+
+/// The JSON of a case of `blind`, diagnosed with other numbers.
+pub(super) fn case_with(
+    case: &Path,
+    options: &Value,
+    tunables: &Tunables,
+) -> anyhow::Result<Value> {
+    let (found, basis) = run_diagnosis(&of_case(case, options), tunables)?;
+    Ok(report::json(&found, &basis))
+}
+
+/// What a case of `blind` is diagnosed with.
+fn of_case(case: &Path, options: &Value) -> DiagnoseArgs {
+    let text = |key: &str| options.get(key).and_then(Value::as_str);
+    DiagnoseArgs {
         robot: case.join(text("robot").unwrap_or("nominal.toml")).display().to_string(),
         log: numbered(case, "log"),
         heldout: numbered(case, "heldout"),
         baseline: numbered(case, "baseline"),
         program: text("program").map(|folder| case.join(folder)),
         trust: text("trust").and_then(|trust| TrustArg::from_str(trust, true).ok()),
-        effects: (!without.is_empty()).then(|| format!("-{}", without.join(","))),
+        effects: None,
         map: String::new(),
         period: options.get("period").and_then(Value::as_f64),
-        out: without.is_empty().then(|| case.join("improved.toml")),
+        out: None,
         report: None,
         explain: false,
         format: Format::Json,
         quiet: true,
-    };
-    let (found, basis) = run_diagnosis(&args)?;
-    Ok(report::json(&found, &basis))
+    }
 }
 
 /// The logs of a part of a case: `log.csv` or `log-1.csv`, `log-2.csv`, …
@@ -192,7 +211,10 @@ fn check_paths(args: &DiagnoseArgs) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn run_diagnosis(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> {
+fn run_diagnosis(
+    args: &DiagnoseArgs,
+    tunables: &Tunables,
+) -> anyhow::Result<(Diagnosis, report::Basis)> {
     check_paths(args)?;
     let model = effects::load(&args.robot)?;
     common::notes(args.quiet, model.assumed());
@@ -240,7 +262,7 @@ fn run_diagnosis(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basi
     } else {
         (wanted.clone(), baseline.as_slice())
     };
-    let settings = Settings { trust, effects: of_torque, tunables: Tunables::DEFAULT };
+    let settings = Settings { trust, effects: of_torque, tunables: tunables.clone() };
     let mut found =
         diagnose_with_progress(&model, [&train, &held, compared], &settings, &progress(args.quiet));
     let known = found.before.iter();
