@@ -14,7 +14,7 @@ use anyhow::{Context, bail};
 use clap::{Args, Subcommand, ValueEnum};
 use serde_json::{Value, json};
 
-use self::cases::write_cases;
+use self::cases::{labels, options, read, write_cases};
 use self::family::family;
 use super::common::{self, Format};
 use super::{diagnose, output};
@@ -201,25 +201,6 @@ fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {
     common::print(args.format, || json!(grades), || table(&grades))
 }
 
-/// The unsealed labels of a folder.
-fn labels(cases: &Path) -> anyhow::Result<Vec<Label>> {
-    let sealed = Sealed { seals: read(&cases.join(SEALS))?, key: read(&cases.join(KEY))? };
-    let labels = blind::open(&sealed)?;
-    // A case name must not lead out of the folder.
-    let leads_out =
-        |label: &&Label| label.case.contains(['/', '\\']) || label.case.starts_with('.');
-    if let Some(label) = labels.iter().find(leads_out) {
-        bail!("{KEY}: '{}' is not a case name; use the file that was generated", label.case);
-    }
-    Ok(labels)
-}
-
-/// The options of a case.
-fn options(case: &Path) -> anyhow::Result<Value> {
-    serde_json::from_str(&read(&case.join("case.json"))?)
-        .with_context(|| format!("'{}' has no case.json", case.display()))
-}
-
 /// The effects that are left out for a case; empty if the case is not graded.
 fn without<'a>(label: &'a Label, left_out: Option<&'a str>) -> Vec<&'a str> {
     match left_out {
@@ -238,13 +219,6 @@ fn diagnosis_of_case(case: &Path, name: &str, without: &[&str]) -> anyhow::Resul
     let text = format!("{value:#}\n");
     output::write(&case.join(name), text.as_bytes())?;
     Ok(value)
-}
-
-fn read(path: &Path) -> anyhow::Result<String> {
-    let shown = path.display();
-    fs::read_to_string(path).with_context(|| {
-        format!("cannot read '{shown}'; name the folder that joulepath blind generate wrote")
-    })
 }
 
 fn table(grades: &Grades) -> String {

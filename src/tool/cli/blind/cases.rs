@@ -1,13 +1,15 @@
 //! Cases of an examination as files.
 
+use std::fs;
 use std::path::Path;
 use std::process::ExitCode;
 
-use anyhow::bail;
+use anyhow::{Context, bail};
 use rayon::prelude::*;
+use serde_json::Value;
 
 use super::super::{common, output};
-use crate::examine::blind::{Case, KEY, SEALS, seal};
+use crate::examine::blind::{Case, KEY, Label, SEALS, Sealed, open, seal};
 
 /// Writes the cases with the numbers 1 to `count` and their seals.
 pub(super) fn write_cases(
@@ -40,4 +42,31 @@ pub(super) fn write_cases(
     let text = format!("{count} cases in '{}', the truth sealed in {KEY}", out.display());
     common::note(quiet, &text);
     Ok(ExitCode::SUCCESS)
+}
+
+/// The unsealed labels of a folder.
+pub(super) fn labels(cases: &Path) -> anyhow::Result<Vec<Label>> {
+    let sealed = Sealed { seals: read(&cases.join(SEALS))?, key: read(&cases.join(KEY))? };
+    let labels = open(&sealed)?;
+    // A case name must not lead out of the folder.
+    let leads_out =
+        |label: &&Label| label.case.contains(['/', '\\']) || label.case.starts_with('.');
+    if let Some(label) = labels.iter().find(leads_out) {
+        bail!("{KEY}: '{}' is not a case name; use the file that was generated", label.case);
+    }
+    Ok(labels)
+}
+
+/// The options of a case.
+pub(super) fn options(case: &Path) -> anyhow::Result<Value> {
+    serde_json::from_str(&read(&case.join("case.json"))?)
+        .with_context(|| format!("'{}' has no case.json", case.display()))
+}
+
+/// The text of a file of a folder that `blind generate` wrote.
+pub(super) fn read(path: &Path) -> anyhow::Result<String> {
+    let shown = path.display();
+    fs::read_to_string(path).with_context(|| {
+        format!("cannot read '{shown}'; name the folder that joulepath blind generate wrote")
+    })
 }

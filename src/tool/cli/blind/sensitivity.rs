@@ -12,7 +12,7 @@ use serde_json::Value;
 
 use super::super::common::{self, Format};
 use super::super::diagnose;
-use super::{labels, options};
+use super::cases::{labels, options};
 use crate::gap::{Tunable, Tunables};
 
 /// Change each chosen number of diagnose, and count the cases with another verdict.
