@@ -78,23 +78,12 @@ pub(in crate::gap) fn refined(
     if moves.is_empty() {
         return piece.clone();
     }
+    let climb = Climb { gains, moves, reshape };
     let start = reshape(piece, &piece.shape);
-    let both = [lowest, f64::INFINITY].map(|below| climbed(gains, &start, moves, below, reshape));
+    let both = [lowest, f64::INFINITY].map(|below| climb.from(&start, below));
     let [a, b] = both.each_ref().map(|of| gains.of(of, f64::INFINITY));
     let [low, all] = both;
     if a > b { low } else { all }
-}
-
-/// The best shape near a piece; the first level has the frequencies `below` \[Hz\].
-#[must_use]
-pub(in crate::gap) fn climbed(
-    gains: &Gains<'_>,
-    piece: &PieceRows,
-    moves: &[Move],
-    below: f64,
-    reshape: &dyn Fn(&PieceRows, &[f64]) -> PieceRows,
-) -> PieceRows {
-    Climb { gains, moves, reshape }.from(piece, below)
 }
 
 /// A pattern search.

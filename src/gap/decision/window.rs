@@ -3,7 +3,7 @@
 //! What acts in a window is the sum of what acts in its parts. Where windows begin and end is looked for
 //! at low frequencies, too: they see no single row.
 
-use super::shape::{Move, climbed, lowest};
+use super::shape::{Move, lowest, refined};
 use crate::arm::effects::Effect;
 use crate::gap::data::Record;
 use crate::gap::design::{Design, PieceRows, Times, Whole};
@@ -71,7 +71,7 @@ impl Windows {
                 let by = |coordinate, step| Move { coordinate, step, is_factor: false };
                 let mut moves = vec![by(n - 3, 0.5 * self.part), by(n - 2, 0.5 * self.part)];
                 let climb = |from: &PieceRows, moves: &[Move]| {
-                    climbed(gains, from, moves, below, &|_, shape| within(shape))
+                    refined(gains, from, moves, lowest(records), &|_, shape| within(shape))
                 };
                 let at_once = climb(&piece, &moves);
                 if let Some((k, most)) = self.whole.rise() {
