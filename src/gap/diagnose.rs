@@ -4,22 +4,19 @@ use super::data::{Record, RecordKind};
 use super::decision::{
     Candidate, Decision, Finding, Found, Gate, Search, Tried, Verdict, decide, may_name_parameters,
 };
-use super::design::{Design, Parameters};
+use super::design::{Design, PieceRows};
 use super::diagnosis::Diagnosis;
 use super::grade::{JointGap, Shrink, budget, places, places_missed, shrink};
-use super::model::{Fitted, Improved};
+use super::model::{Improved, written};
 use super::phase::Phase;
-use super::posterior::{Hypothesis, Member, fitted_as_written};
 use super::sign::{Turned, is_opposite};
 use super::trust::Trust;
 use super::tunables::Tunables;
 use crate::arm::dynamics::Load;
-use crate::arm::effects::{Acts, Effect, Nature};
+use crate::arm::effects::{Acts, Effect, Nature, Scope};
 use crate::arm::robot::Model;
 use crate::learn::identify::Samples;
 
-/// Steps of the sizes of errors of a model that is written: least and most.
-const STEPS: [usize; 2] = [8, 32];
 /// Everyday error of held-out data, of the torque.
 const EVERYDAY: f64 = 0.01;
 /// Part of the gap by which other parameters alone may change it.
@@ -85,7 +82,7 @@ fn robot_of(
     }
     let mut records = all(model, before);
     let design = with_loads(&mut records, settings);
-    let refit = improved(model, (&design, &records), &[]);
+    let refit = refitted(model, (&design, &records));
     let held = all(model, before);
     let gaps = shrink(&held, [model, &refit.applied, &refit.applied]);
     let is_everyday = |of: &JointGap| of.refit <= settings.tunables.usual_error * of.torque;
@@ -141,7 +138,7 @@ fn diagnose_telling(
     let Some(none) = Search::none_of(&design) else { return Diagnosis::failed(model, held) };
     let (none, found, tried) = search.best(none);
     tell(Phase::Decision);
-    let plain = improved(believed, (&design, &train), &[]);
+    let plain = refitted(believed, (&design, &train));
     let refit = turned.as_ref().map_or_else(|| plain.clone(), |of| of.added_to(&plain));
     let models = Models { nominal: model, believed, refit: &refit, turned: turned.as_ref() };
     let Graded { mut decision, mut best, shrink: mut graded } =
@@ -219,24 +216,45 @@ fn graded(
     let mut withdrawn = Vec::new();
     loop {
         let mut decision = decide(search, none, &found, tried);
-        let best = models.with(search, &decision.asserted);
-        let graded = shrink(held, [models.nominal, &models.refit.applied, &best.applied]);
-        let mut idle: Vec<&'static str> = Vec::new();
+        decision.asserted = search.shaped_as_written(&decision.asserted);
+        let of =
+            |best: &Improved| shrink(held, [models.nominal, &models.refit.applied, &best.applied]);
+        let mut best = models.with(search, &decision.asserted);
+        let mut graded = of(&best);
+        if decision.asserted.iter().any(|of| of.effect.acts == Acts::InWindow) {
+            // What acted in windows of some logs need not come again in others.
+            let once =
+                models.with_those(search, &decision.asserted, |of| of.acts != Acts::InWindow);
+            let of_once = of(&once);
+            if of_once.total.value > graded.total.value {
+                (best, graded) = (once, of_once);
+            }
+        }
+        // One at a time: what is of no use beside it may be of use without it.
+        let mut idle: Option<(f64, Finding, Vec<usize>)> = None;
         let is_written =
             |of: &&Finding| decision.asserted.iter().any(|a| a.effect.id == of.effect.id);
         for of in decision.effects.iter().chain(decision.candidates.iter().filter(is_written)) {
             let limit = left_at_most(of.effect, &search.design.tunables);
-            let value = left(of, &gaps_without(search, &decision, of.effect, held, models, &best));
+            let gaps = gaps_without(search, &decision, of.effect, held, models, &best);
+            let value = left_by(of, &gaps);
             let entry = Gate::HeldOut.of(of.effect.id.to_owned(), value, limit);
-            if !entry.passed {
-                idle.push(of.effect.id);
-                if of.effect.nature != Nature::Parameters {
-                    withdrawn.push(of.clone());
-                }
+            let over = value / limit;
+            if !entry.passed && idle.as_ref().is_none_or(|(most, ..)| over > *most) {
+                let fails = |joint: &usize| left(&[*joint], &gaps.joints) > limit;
+                let joints: Vec<usize> = of.joints.iter().copied().filter(fails).collect();
+                let all = of.effect.scope == Scope::Robot || joints.len() == of.joints.len();
+                idle = Some((over, of.clone(), if all { Vec::new() } else { joints }));
             }
             trail.push(entry);
         }
-        let less = if idle.is_empty() { None } else { search.without_ids(none, &found, &idle) };
+        let less = idle.and_then(|(_, of, joints)| {
+            let less = search.without_id(none, &found, (of.effect.id, &joints));
+            if of.effect.nature != Nature::Parameters && joints.is_empty() {
+                withdrawn.push(of);
+            }
+            less
+        });
         let Some(less) = less else {
             decision.trail.append(&mut trail);
             decision.candidates.append(&mut withdrawn);
@@ -264,10 +282,21 @@ fn gaps_without(
 impl Models<'_> {
     /// The model with some effects.
     fn with(&self, search: &Search<'_>, effects: &[Candidate]) -> Improved {
+        self.with_those(search, effects, |_| true)
+    }
+
+    /// The same, with those effects alone that come again.
+    fn with_those(
+        &self,
+        search: &Search<'_>,
+        effects: &[Candidate],
+        comes_again: impl Fn(&Effect) -> bool,
+    ) -> Improved {
         if effects.is_empty() {
             return self.refit.clone();
         }
-        let best = improved(self.believed, (search.design, search.records), effects);
+        let logs = (search.design, search.records);
+        let best = written(self.believed, logs, pieces_of(effects), comes_again);
         self.turned.map_or_else(|| best.clone(), |of| of.added_to(&best))
     }
 }
@@ -283,14 +312,25 @@ fn left_at_most(effect: &Effect, tunables: &Tunables) -> f64 {
     }
 }
 
-/// What is left of the gap at an effect's joints, of what the refitted model leaves, or of an everyday
+/// What is left of the gap with an effect. One that acts in windows may act in others here: what it
+/// leaves in most blocks counts.
+fn left_by(of: &Finding, gaps: &Shrink) -> f64 {
+    if of.effect.acts != Acts::InWindow {
+        return left(&of.joints, &gaps.joints);
+    }
+    let mut all: Vec<f64> = gaps.blocks.iter().map(|block| left(&of.joints, block)).collect();
+    all.sort_by(f64::total_cmp);
+    all.get(all.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// What is left of the gap at an effect's joints (all: none is listed), of what the refitted model leaves, or of an everyday
 /// error where that is less: parameters may stand in for an effect \[1\].
-fn left(of: &Finding, graded: &Shrink) -> f64 {
-    let at = |joint: usize| of.joints.is_empty() || of.joints.contains(&joint);
-    let joints = graded.joints.iter().enumerate();
-    let joints = joints.filter(|(joint, gap)| at(*joint) && gap.torque > 0.0);
+fn left(joints: &[usize], gaps: &[JointGap]) -> f64 {
+    let at = |joint: usize| joints.is_empty() || joints.contains(&joint);
+    let used = gaps.iter().enumerate();
+    let used = used.filter(|(joint, gap)| at(*joint) && gap.torque > 0.0);
     let (mut before, mut after) = (0.0, 0.0);
-    for (_, gap) in joints {
+    for (_, gap) in used {
         before += (gap.refit / gap.torque).max(EVERYDAY).powi(2);
         after += (gap.refit_plus_effect / gap.torque).powi(2);
     }
@@ -345,7 +385,7 @@ fn excited(records: &[Record<'_>]) -> usize {
 fn with_loads(train: &mut [Record<'_>], settings: &Settings) -> Design {
     let design = Design::new(train, settings.trust, &settings.tunables);
     let Some(model) = train.first().map(|first| first.motion.model.clone()) else { return design };
-    let refit = improved(&model, (&design, train), &[]);
+    let refit = refitted(&model, (&design, train));
     for record in train.iter_mut() {
         record.motion.carry(&refit.applied);
         record.motion.torque = record.motion.torques_of(&refit.applied, &Load::none());
@@ -370,22 +410,13 @@ fn nameable(train: &[Record<'_>], settings: &Settings) -> Vec<&'static Effect> {
     settings.effects.iter().copied().filter(may).collect()
 }
 
-/// The model with effects that predicts best: neither everyday errors nor other forms of laws are
-/// written, so that its numbers stand in for them.
-fn improved(
-    model: &Model,
-    (design, records): (&Design, &[Record<'_>]),
-    effects: &[Candidate],
-) -> Improved {
-    let pieces = effects.iter().flat_map(|of| &of.pieces);
-    let members = pieces.map(|piece| Member::as_written(design, records, piece.clone()));
-    let hypothesis = Hypothesis { members: members.collect() };
-    let Some(fit) = fitted_as_written(design, hypothesis, STEPS) else {
-        return Improved::same(model);
-    };
-    let Parameters { mixing, sizes, .. } = &design.parameters;
-    let change = mixing * fit.mean.rows(0, mixing.ncols());
-    Improved::new(model, [&change, sizes], &Fitted::of_fit(&fit))
+fn pieces_of(effects: &[Candidate]) -> Vec<PieceRows> {
+    effects.iter().flat_map(|of| of.pieces.iter().cloned()).collect()
+}
+
+/// The model with other parameters that predicts best.
+fn refitted(model: &Model, logs: (&Design, &[Record<'_>])) -> Improved {
+    written(model, logs, Vec::new(), |_| true)
 }
 
 /// Torques that are logged with the other sign.

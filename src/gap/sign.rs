@@ -51,7 +51,7 @@ impl Turned {
 
     /// A model that has it, too.
     pub(super) fn added_to(&self, model: &Improved) -> Improved {
-        Improved::new(&model.written, [&DVector::zeros(0), &DVector::zeros(0)], &self.fitted)
+        Improved::new(&model.written, [&DVector::zeros(0), &DVector::zeros(0)], [&[], &self.fitted])
     }
 
     /// What is said of it.

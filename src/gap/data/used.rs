@@ -38,7 +38,7 @@ impl Used {
         // A filter spreads what is unknown over the rows beside it: when a motor begins to move.
         let reach = cutoff.map_or(0, |cutoff| (SPREAD / (cutoff * motion.step())).ceil() as usize);
         let window = |joint: usize| {
-            let known = moving(joint);
+            let known = passed(moving(joint), reach, &fade);
             let narrow = narrowed(&known, reach, motion.closed);
             // A motion of short moves alone is used as it is.
             if narrow.iter().any(|w| *w > 0.0) { narrow } else { known }
@@ -60,6 +60,23 @@ impl Used {
     pub(super) fn rows(&self, joint: usize, x: &[f64]) -> Vec<f64> {
         self.spectrum.masked(&levelled(x, &self.rests[joint]), &self.window[joint])
     }
+}
+
+/// A window with the rests that are shorter than a filter's spread: the friction of a motor that turns
+/// round is known on both sides, and filtered like the torques.
+fn passed(mut window: Vec<f64>, reach: usize, fade: &[f64]) -> Vec<f64> {
+    let mut row = 0;
+    while row < window.len() {
+        let from = row;
+        while row < window.len() && window[row] == 0.0 {
+            row += 1;
+        }
+        if row > from && row - from <= reach && from > 0 && row < window.len() {
+            window[from..row].copy_from_slice(&fade[from..row]);
+        }
+        row += 1;
+    }
+    window
 }
 
 /// A series without its mean in each rest: stiction may be anything.

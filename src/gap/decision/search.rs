@@ -8,7 +8,9 @@ use super::window::Windows;
 use crate::gap::data::Record;
 use crate::gap::design::{Design, Group, PieceRows, link_pieces, piece_rows};
 use crate::gap::model::Fitted;
-use crate::gap::posterior::{Fit, Gains, Hypothesis, Member, Sizes, Start, fitted, usual};
+use crate::gap::posterior::{
+    Fit, Gains, Hypothesis, Member, Sizes, Start, fitted, fitted_as_written, usual,
+};
 
 /// Families that are fitted in full in each round.
 const FULL: usize = 6;
@@ -16,12 +18,16 @@ const FULL: usize = 6;
 const MOST: usize = 3;
 /// Steps of the sizes, least and most: of a first fit, of a first look at a set, of a fit with a set.
 const FIRST: [usize; 2] = [10, 40];
-const LOOK: [usize; 2] = [3, 3];
+const LOOK: [usize; 2] = [3, 12];
 const STEPS: [usize; 2] = [6, 24];
 /// A fit at given sizes.
 const NO_STEPS: [usize; 2] = [0, 0];
 /// Deviations by which a parameter may be beyond what is possible.
 pub(super) const BEYOND: f64 = 2.0;
+/// Spread of everyday errors beyond the largest usual one \[ln\].
+const TAIL: f64 = 0.2;
+/// Times that shapes are looked for beside what they bring along.
+const ROUNDS: usize = 2;
 /// Sets whose shapes are refined in each round.
 const REFINED: usize = 4;
 
@@ -186,8 +192,19 @@ impl Search<'_> {
         let start = Start::near(self.design, &hypothesis, [none.fit.known(), near.fit.known()]);
         let fit = fitted(self.design, hypothesis, start, steps)?;
         let cost: f64 = effects.iter().map(|of| of.cost).sum();
-        let score = fit.log_evidence - none.fit.log_evidence - cost;
+        let score = fit.log_evidence - none.fit.log_evidence - cost - self.beyond_usual(&fit)
+            + self.beyond_usual(&none.fit);
         Some(Found { effects, fit, score })
+    }
+
+    /// What everyday errors cost that are larger than any robot's \[nats\].
+    fn beyond_usual(&self, fit: &Fit) -> f64 {
+        let joints = 0..self.design.joints.len();
+        let over = joints.map(|joint| {
+            let share = fit.everyday(self.design, joint) / self.design.tunables.usual_error;
+            0.5 * (share.ln().max(0.0) / TAIL).powi(2)
+        });
+        over.sum()
     }
 
     /// The best set: effects are added while the evidence grows, then joints and effects that became
@@ -236,16 +253,24 @@ impl Search<'_> {
         found
     }
 
-    /// The set without the effects that have one of some ids.
+    /// The set without an effect, or without its pieces at some joints.
     #[must_use]
-    pub(in crate::gap) fn without_ids(
+    pub(in crate::gap) fn without_id(
         &self,
         none: &Found,
         found: &Found,
-        ids: &[&str],
+        (id, joints): (&str, &[usize]),
     ) -> Option<Found> {
         let mut effects = found.effects.clone();
-        effects.retain(|of| !ids.contains(&of.effect.id));
+        for of in effects.iter_mut().filter(|of| of.effect.id == id) {
+            let goes = |piece: &PieceRows| {
+                joints.is_empty() || piece.joint.is_some_and(|joint| joints.contains(&joint))
+            };
+            let gone: f64 = of.pieces.iter().filter(|of| goes(of)).map(|of| self.cost_of(of)).sum();
+            of.pieces.retain(|piece| !goes(piece));
+            of.cost -= gone;
+        }
+        effects.retain(|of| !of.pieces.is_empty());
         if effects.is_empty() {
             Some(none.clone())
         } else {
@@ -377,6 +402,41 @@ impl Search<'_> {
     /// Prior cost of a piece \[nats\].
     fn cost_of(&self, piece: &PieceRows) -> f64 {
         self.design.tunables.joint_cost + (piece.choices.max(1) as f64).ln()
+    }
+
+    /// Effects with the shapes that are best where neither everyday errors nor other forms of the laws
+    /// are there to help.
+    #[must_use]
+    pub(in crate::gap) fn shaped_as_written(&self, effects: &[Candidate]) -> Vec<Candidate> {
+        let pieces = |all: &[Candidate], but: Option<usize>| -> Vec<PieceRows> {
+            let kept = all.iter().enumerate().filter(|(k, _)| Some(*k) != but);
+            kept.flat_map(|(_, of)| of.pieces.iter().cloned()).collect()
+        };
+        let fit = |pieces: Vec<PieceRows>, near: Option<&Fit>| {
+            fitted_as_written(self.design, self.records, pieces, near)
+        };
+        let has_moves = |piece: &PieceRows| !moves(piece.effect, self.records, piece).is_empty();
+        let Some(model) = self.records.first().map(|of| of.motion.model) else { return Vec::new() };
+        let mut all = effects.to_vec();
+        for k in 0..all.len() {
+            let first = all[..k].iter().map(|of| of.pieces.len()).sum();
+            if !all[k].pieces.iter().any(has_moves) {
+                continue;
+            }
+            for _ in 0..ROUNDS {
+                let Some(with) = fit(pieces(&all, None), None) else { break };
+                let Some(without) = fit(pieces(&all, Some(k)), Some(&with)) else { break };
+                let gains = Gains::new(self.design, &without);
+                for piece in &mut all[k].pieces {
+                    *piece = self.best_shape(&gains, piece).without_tangents();
+                }
+                let Some(with) = fit(pieces(&all, None), Some(&with)) else { break };
+                if !with.bound(all[k].pieces.iter_mut(), first, model) {
+                    break;
+                }
+            }
+        }
+        all
     }
 
     /// The same set with the best shapes of its last effect, fitted in full.

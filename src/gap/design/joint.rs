@@ -47,6 +47,8 @@ pub struct Cell {
     pub noise: f64,
     /// Mean square of the joint's torque, where the log does not show its noise; else 0 \[N²m²\].
     pub white: f64,
+    /// Mean square of the joint's torque \[N²m²\].
+    pub all: f64,
     /// Mean square of the model's torque in a row \[N²m²\].
     pub power: f64,
 }
@@ -208,6 +210,7 @@ fn cells_of(record: &Record<'_>, number: usize, joint: usize) -> Vec<Cell> {
             set: set_of(record.kind),
             noise: mean(noise).max(LEAST).max(FLOOR * all),
             white: if record.repetitions > 1 { 0.0 } else { all },
+            all,
             power: mean(power),
         });
         first = next;

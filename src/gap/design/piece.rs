@@ -7,10 +7,13 @@ use super::basis::{Functions, fades, functions, rms};
 use super::column::{Column, Piece, columns_at, pieces};
 use super::problem::Design;
 use super::set::Set;
-use crate::arm::dynamics::RIGID;
+use crate::arm::dynamics::{JOINT, RIGID};
 use crate::arm::effects::{self, Coordinate, Effect, Form, Motion, Nature, Role, Scope};
+use crate::arm::robot::Model;
 use crate::gap::data::{Record, RecordKind};
 
+/// Deviation of a factor that is known.
+const FIXED: f64 = 1e-6;
 /// Root mean square of functions of unit size that are seen at all.
 const SEEN: f64 = 1e-6;
 
@@ -31,6 +34,8 @@ pub struct PieceRows {
     pub prior: Vec<(f64, f64)>,
     /// Joints that it reaches, with their rows.
     pub rows: Vec<(usize, DMatrix<f64>)>,
+    /// The effects that it brings along.
+    pub(in crate::gap) brought: Vec<BroughtEffect>,
 }
 
 /// An effect that acts all the time, to be cut to windows.
@@ -199,9 +204,14 @@ pub(in crate::gap) fn piece_rows(
         .collect();
     all.into_par_iter()
         .flat_map_iter(|(effect, joint)| {
-            let brought = brought_rows(design, records, effect, joint);
-            let with = |piece| to_rows(design, records, effect, piece).with_brought(&brought);
-            pieces(effect, records, joint).into_iter().map(with).collect::<Vec<_>>()
+            let own = pieces(effect, records, joint).into_iter();
+            let own: Vec<_> = own.map(|of| to_rows(design, records, effect, of)).collect();
+            let mut reached: Vec<usize> =
+                own.iter().flat_map(|of| of.rows.iter().map(|(joint, _)| *joint)).collect();
+            reached.sort_unstable();
+            reached.dedup();
+            let brought = brought_rows(design, records, effect, (joint, &reached));
+            own.into_iter().map(|of| of.with_brought(&brought)).collect::<Vec<_>>()
         })
         .collect()
 }
@@ -230,6 +240,7 @@ pub(in crate::gap) fn link_pieces(design: &Design, effect: &'static Effect) -> P
                 own: RIGID,
                 prior: vec![(0.0, 1.0); RIGID],
                 rows: rows.collect(),
+                brought: Vec::new(),
             }
         })
         .collect()
@@ -252,6 +263,35 @@ impl PieceRows {
         to_rows(design, records, self.effect, piece).with_brought(&self.brought())
     }
 
+    /// The piece at its shape alone.
+    #[must_use]
+    pub(in crate::gap) fn without_tangents(mut self) -> PieceRows {
+        let shapes = self.effect.coordinates.iter();
+        let width = 1 + shapes.filter(|of| matches!(of.role, Role::Shape(_))).count();
+        let tangents = self.prior[..self.own].iter_mut().enumerate().filter(|(k, _)| k % width > 0);
+        tangents.for_each(|(_, prior)| prior.1 = FIXED);
+        self
+    }
+
+    /// What it brings along within what can be: factors that are beyond that are at the bound. Whether
+    /// one was.
+    pub(in crate::gap) fn bound(&mut self, factors: &[f64], model: &Model) -> bool {
+        let mut is_beyond = false;
+        let brought = self.brought.iter().flat_map(|of| {
+            let parameters = of.effect.parameters.iter().zip(&of.usual);
+            parameters.map(|(parameter, usual)| (parameter, usual, of.joint))
+        });
+        for (k, (parameter, usual, joint)) in (self.own..).zip(brought) {
+            let there = parameter.there.and_then(|of| of(model, joint));
+            let least = there.map_or(f64::NEG_INFINITY, |there| -there / usual);
+            if factors[k] < least - FIXED {
+                self.prior[k] = (least, FIXED);
+                is_beyond = true;
+            }
+        }
+        is_beyond
+    }
+
     /// The columns that it brings along.
     fn brought(&self) -> Brought {
         let count = self.prior.len() - self.own;
@@ -261,6 +301,7 @@ impl PieceRows {
         Brought {
             prior: self.prior[self.own..].to_vec(),
             rows: self.rows.iter().map(rows).collect(),
+            effects: self.brought.clone(),
         }
     }
 
@@ -282,6 +323,7 @@ impl PieceRows {
             *rows = std::mem::take(rows).resize_horizontally(self.own + more, 0.0);
         }
         self.prior.extend(&brought.prior);
+        self.brought.clone_from(&brought.effects);
         self
     }
 
@@ -367,11 +409,25 @@ impl PieceRows {
     }
 }
 
+/// An effect that another one brings along to a joint; all its coordinates are linear.
+#[derive(Clone)]
+pub(in crate::gap) struct BroughtEffect {
+    /// The effect.
+    pub effect: &'static Effect,
+    /// Joint, from 0.
+    pub joint: usize,
+    /// Usual values of its coordinates.
+    pub usual: Vec<f64>,
+    /// Standard parameters of the model that it changes.
+    pub parameters: Vec<usize>,
+}
+
 /// Columns that an effect brings along.
 #[derive(Default)]
 struct Brought {
     prior: Vec<(f64, f64)>,
     rows: Vec<(usize, DMatrix<f64>)>,
+    effects: Vec<BroughtEffect>,
 }
 
 /// The columns of the effects that an effect brings along.
@@ -379,17 +435,22 @@ fn brought_rows(
     design: &Design,
     records: &[Record<'_>],
     effect: &'static Effect,
-    joint: usize,
+    (joint, reached): (usize, &[usize]),
 ) -> Brought {
     let mut all = Brought::default();
-    if effect.scope == Scope::Robot {
-        return all;
-    }
-    for brought in effect.brings.iter().filter_map(|id| effects::find(id)) {
+    // What acts on a motor by another joint brings along what is at that one.
+    let joints = match effect.scope {
+        Scope::Joint => vec![joint],
+        Scope::Robot => reached.iter().copied().filter(|of| *of != joint).collect(),
+    };
+    let brought = effect.brings.iter().filter_map(|id| effects::find(id));
+    for (brought, joint) in brought.flat_map(|of| joints.iter().map(move |joint| (of, *joint))) {
         let Some(first) = pieces(brought, records, joint).into_iter().next() else { continue };
         let of = to_rows(design, records, brought, first);
         let before = all.prior.len();
         all.prior.extend(of.prior);
+        let parameters = changed_by(brought, joint, records);
+        all.effects.push(BroughtEffect { effect: brought, joint, usual: of.shape, parameters });
         for (at, rows) in of.rows {
             match all.rows.iter_mut().find(|(known, _)| *known == at) {
                 Some((_, known)) => {
@@ -404,6 +465,27 @@ fn brought_rows(
         }
     }
     all
+}
+
+/// The standard parameters of a joint that an effect changes.
+fn changed_by(effect: &Effect, joint: usize, records: &[Record<'_>]) -> Vec<usize> {
+    let (Some(model), Form::Model(change)) =
+        (records.first().map(|of| of.motion.model), effect.form)
+    else {
+        return Vec::new();
+    };
+    let mut changed = model.clone();
+    change(&mut changed, joint, &vec![1.0; effect.coordinates.len()]);
+    let of = |model: &Model| {
+        [
+            model.friction.viscous[joint],
+            model.friction.coulomb[joint],
+            model.sensors.torque_offset[joint],
+        ]
+    };
+    let first = RIGID * model.dof + JOINT * joint + 1;
+    let pairs = of(model).into_iter().zip(of(&changed)).enumerate();
+    pairs.filter(|(_, (a, b))| a != b).map(|(k, _)| first + k).collect()
 }
 
 fn to_rows(
@@ -442,5 +524,6 @@ fn to_rows(
         own: piece.columns.len(),
         prior: piece.columns.iter().map(|column| (column.mean, column.sd)).collect(),
         rows,
+        brought: Vec::new(),
     }
 }

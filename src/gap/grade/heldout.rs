@@ -44,6 +44,8 @@ pub struct Shrink {
     pub by_effect: Interval,
     /// Deviations over draws of blocks by which the effects let the gap of all grow \[1\].
     pub growth: f64,
+    /// By block of the motions, by joint.
+    pub blocks: Vec<Vec<JointGap>>,
 }
 
 /// Sums of squares of a joint in a block: measured, missed by each of three models; noise; rows.
@@ -91,6 +93,7 @@ pub fn shrink(records: &[Record<'_>], models: [&Model; 3]) -> Shrink {
         total: interval(total, &drawn[0], blocks.len()),
         by_effect: interval(by_effect, &drawn[1], blocks.len()),
         growth: growth(by_effect, &drawn[1], blocks.len()),
+        blocks: all.iter().map(|block| pooled(&blocks, &[*block], n)).collect(),
     }
 }
 

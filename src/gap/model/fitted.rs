@@ -4,8 +4,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::body_near::body_near;
 use crate::arm::effects::{Effect, Role};
-use crate::gap::design::PieceRows;
-use crate::gap::posterior::Fit;
+use crate::gap::design::{BroughtEffect, PieceRows};
+use crate::gap::posterior::{Fit, Member};
 
 /// Step over which parameters are differentiated, in deviations.
 const DIFFERENCE: f64 = 1e-3;
@@ -53,6 +53,28 @@ impl Fitted {
             let covariance = fit.covariance.view((from, from), (own, own)).into_owned();
             all.push(Fitted::new(&member.piece, &factors, &covariance));
             from += member.piece.prior.len();
+        }
+        all
+    }
+
+    /// The effects that all pieces of a fit bring along.
+    #[must_use]
+    pub(super) fn brought(fit: &Fit) -> Vec<Fitted> {
+        let mut from = fit.mean.len() - fit.hypothesis.columns();
+        let mut all = Vec::new();
+        for Member { piece, .. } in &fit.hypothesis.members {
+            let mut next = from + piece.own;
+            for BroughtEffect { effect, joint, usual, .. } in &piece.brought {
+                let count = usual.len();
+                let factors = fit.mean.rows(next, count);
+                let coordinates: Vec<f64> =
+                    usual.iter().zip(&factors).map(|(x, f)| x * f).collect();
+                let usual = DMatrix::from_diagonal(&DVector::from_column_slice(usual));
+                let spread = &usual * fit.covariance.view((next, next), (count, count)) * &usual;
+                all.push(with_deviations(effect, Some(*joint), &coordinates, &spread));
+                next += count;
+            }
+            from += piece.prior.len();
         }
         all
     }

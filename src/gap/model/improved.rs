@@ -31,12 +31,17 @@ impl Improved {
         Improved { applied: reapplied(&written), written }
     }
 
-    /// A model with changes of its standard parameters, of which `sizes` are usual, and with effects.
-    /// Effects that no robot file can have are left out.
+    /// A model with changes of its standard parameters, of which `sizes` are usual, with those that
+    /// effects bring along, and with effects. Effects that no robot file can have are left out.
     #[must_use]
-    pub fn new(model: &Model, [change, sizes]: [&DVector<f64>; 2], effects: &[Fitted]) -> Improved {
+    pub fn new(
+        model: &Model,
+        [change, sizes]: [&DVector<f64>; 2],
+        [brought, effects]: [&[Fitted]; 2],
+    ) -> Improved {
         let mut written = model.clone();
         refit(&mut written, change, sizes);
+        brought.iter().for_each(|of| of.change(&mut written));
         let mut result = Improved::of(written);
         // What dry friction there is bounds how far it may fall.
         let is_parameter = |of: &&Fitted| of.effect.nature != Nature::Law;
@@ -102,10 +107,8 @@ fn refit(model: &mut Model, change: &DVector<f64>, sizes: &DVector<f64>) {
 
 fn add(model: &mut Model, now: &Model, fitted: &Fitted) {
     let effect = fitted.effect;
-    if effect.is_of_sensors()
-        && let (Form::Model(change), Some(joint)) = (&effect.form, fitted.joint)
-    {
-        change(model, joint, &fitted.coordinates);
+    if effect.is_of_sensors() && fitted.joint.is_some() {
+        fitted.change(model);
         return;
     }
     let dof = model.dof;
@@ -136,6 +139,19 @@ fn add(model: &mut Model, now: &Model, fitted: &Fitted) {
                 }
             }
         }
+    }
+}
+
+impl Fitted {
+    /// Changes the numbers of a model, as far as there is something.
+    fn change(&self, model: &mut Model) {
+        let (Form::Model(change), Some(joint)) = (&self.effect.form, self.joint) else { return };
+        let least = self.effect.parameters.iter().map(|of| {
+            let there = of.there.and_then(|there| there(model, joint));
+            there.map_or(f64::NEG_INFINITY, |there| -there)
+        });
+        let values = self.coordinates.iter().zip(least).map(|(value, least)| value.max(least));
+        change(model, joint, &values.collect::<Vec<_>>());
     }
 }
 

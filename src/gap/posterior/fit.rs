@@ -3,11 +3,13 @@
 use nalgebra::{Cholesky, DMatrix, DVector};
 use rayon::prelude::*;
 
-use super::hypothesis::{Extra, Hypothesis};
+use super::hypothesis::{Extra, Hypothesis, Member};
 use super::reduced::{Reduced, variance};
-use super::sizes::{JointSizes, Size, Sizes, without_everyday};
+use super::sizes::{JointSizes, LAWS, NOISE, Size, Sizes, WRITTEN, without_everyday};
 use super::start::{Known, Start};
-use crate::gap::design::{Cell, Design, Group, JointDesign, Packed, Set};
+use crate::arm::robot::Model;
+use crate::gap::data::Record;
+use crate::gap::design::{Cell, Design, Group, JointDesign, Packed, Parameters, PieceRows, Set};
 
 /// The logs with a hypothesis.
 #[derive(Clone)]
@@ -32,6 +34,10 @@ pub(in crate::gap) struct Fit {
 
 /// Gain of a step after which no further one is made \[nats\].
 const CONVERGED: f64 = 0.5;
+/// Steps of the sizes of errors of a model that is written: least and most.
+const AS_WRITTEN: [usize; 2] = [8, 32];
+/// Deviation of a parameter that keeps its value, of its usual one.
+const KEPT: f64 = 1e-3;
 /// Curvature that is added where a size hardly matters.
 const LEAST_CURVATURE: f64 = 0.3;
 
@@ -46,14 +52,25 @@ pub(in crate::gap) fn fitted(
     fit_from(design, hypothesis, (start, 1.0), steps)
 }
 
-/// Fits a hypothesis with what a written model has: neither everyday errors nor lags of the torques.
+/// Fits pieces with what a written model has: neither everyday errors nor lags of the torques; at the
+/// sizes of errors of another fit, where there is one.
 #[must_use]
 pub(in crate::gap) fn fitted_as_written(
     design: &Design,
-    hypothesis: Hypothesis,
-    steps: [usize; 2],
+    records: &[Record<'_>],
+    pieces: Vec<PieceRows>,
+    near: Option<&Fit>,
 ) -> Option<Fit> {
-    fit_from(design, hypothesis, (Start::at(without_everyday(design)), 0.0), steps)
+    let members = pieces.into_iter().map(|piece| Member::as_written(design, records, piece));
+    let hypothesis = Hypothesis { members: members.collect() };
+    let (mut sizes, steps) = match near {
+        Some(near) => (near.sizes.clone(), [0, 0]),
+        None => (without_everyday(design), AS_WRITTEN),
+    };
+    for joint in &mut sizes {
+        joint.groups.retain(|(group, _)| !matches!(group, Group::Form(_)));
+    }
+    fit_from(design, hypothesis, (Start::at(sizes), 0.0), steps)
 }
 
 fn fit_from(
@@ -108,6 +125,26 @@ impl Fit {
     pub(in crate::gap) fn known(&self) -> Known<'_> {
         let Fit { hypothesis, sizes, amplitudes, .. } = self;
         Known { hypothesis, sizes, amplitudes }
+    }
+
+    /// Bounds what pieces bring along that are its members from number `first` on; whether one was
+    /// beyond.
+    pub(in crate::gap) fn bound<'a>(
+        &self,
+        pieces: impl Iterator<Item = &'a mut PieceRows>,
+        first: usize,
+        model: &Model,
+    ) -> bool {
+        let members = &self.hypothesis.members;
+        let counts = members[..first].iter().map(|member| member.piece.prior.len());
+        let mut from = self.mean.len() - self.hypothesis.columns() + counts.sum::<usize>();
+        let mut is_beyond = false;
+        for piece in pieces {
+            let factors = &self.mean.as_slice()[from..from + piece.prior.len()];
+            is_beyond |= piece.bound(factors, model);
+            from += piece.prior.len();
+        }
+        is_beyond
     }
 
     /// Prior standard deviations and means of the effects' factors.
@@ -165,11 +202,11 @@ impl Fit {
             })
             .collect();
         self.reduced = all?;
-        self.solve(parameters, design.parameters.of_model())
+        self.solve(parameters, &design.parameters)
     }
 
     /// Parameters and factors of effects, and the evidence.
-    fn solve(&mut self, parameters: usize, of_model: usize) -> Option<()> {
+    fn solve(&mut self, parameters: usize, of: &Parameters) -> Option<()> {
         let (means, sds) = self.prior();
         let (h, global) = (means.len(), 1 + parameters + means.len());
         let mut sum = DMatrix::zeros(global, global);
@@ -186,12 +223,21 @@ impl Fit {
         }
         let left = &sum * &shift;
         let squares = shift.dot(&left);
-        let size = |k: usize| if k < of_model { 1.0 } else { self.path };
+        let size = |k: usize| if k < of.of_model() { 1.0 } else { self.path };
         let scale: Vec<f64> = (0..parameters).map(size).chain(sds.iter().copied()).collect();
         let n = parameters + h;
-        let scaled = DMatrix::from_fn(n, n, |i, k| {
+        let mut scaled = DMatrix::from_fn(n, n, |i, k| {
             scale[i] * scale[k] * sum[(1 + i, 1 + k)] + if i == k { 1.0 } else { 0.0 }
         });
+        // What an effect brings along is the model's no more.
+        let members = if self.path > 0.0 { &[] } else { &self.hypothesis.members[..] };
+        for brought in members.iter().flat_map(|of| &of.piece.brought) {
+            for parameter in &brought.parameters {
+                let row = of.mixing.row(*parameter) / (KEPT * of.sizes[*parameter].max(1e-12));
+                let mut model = scaled.view_mut((0, 0), (row.len(), row.len()));
+                model += row.transpose() * &row;
+            }
+        }
         let right = DVector::from_fn(n, |k, _| scale[k] * left[1 + k]);
         let factor = Cholesky::new(scaled)?;
         let moved = factor.solve(&right);
@@ -336,8 +382,9 @@ impl Fit {
             let part_of = |cell: &Cell, laws: f64| match (k, cell.set) {
                 (k, Set::Now) if k == cell.range => cell.power,
                 (k, Set::Baseline) if k == 3 + cell.range => cell.power,
-                (6, _) => cell.white,
-                (7, _) => laws,
+                (NOISE, _) => cell.white,
+                (LAWS, _) => laws,
+                (WRITTEN, Set::Now) => cell.all,
                 _ => 0.0,
             };
             let (mut gradient, mut curvature) = (0.0, 0.0);

@@ -3,7 +3,7 @@
 use nalgebra::{Cholesky, DMatrix, Dyn};
 
 use super::hypothesis::Extra;
-use super::sizes::JointSizes;
+use super::sizes::{JointSizes, LAWS, NOISE, WRITTEN};
 use crate::gap::design::{Cell, Group, JointDesign, Packed, Set};
 
 /// Weighted products of a joint whose everyday errors are marginalised.
@@ -34,7 +34,9 @@ pub(super) fn variance(cell: &Cell, sizes: &JointSizes, laws: f64) -> f64 {
         Set::Drift => 0.0,
     };
     let share = |k: usize| sizes.error[k].value.powi(2);
-    cell.noise + error * error * cell.power + share(6) * cell.white + share(7) * laws
+    let written = if cell.set == Set::Now { share(WRITTEN) * cell.all } else { 0.0 };
+    let known = cell.noise + error * error * cell.power + written;
+    known + share(NOISE) * cell.white + share(LAWS) * laws
 }
 
 /// Sizes of the local columns: of everyday errors, then of forms.

@@ -20,6 +20,11 @@ impl Size {
         Size { value: median, median, spread }
     }
 
+    /// One that is known.
+    fn fixed(value: f64) -> Size {
+        Size { value, median: value, spread: NONE }
+    }
+
     /// Logarithm of the prior, up to a constant.
     #[must_use]
     pub(in crate::gap) fn log_prior(&self) -> f64 {
@@ -36,6 +41,12 @@ impl Size {
     }
 }
 
+/// Number of the noise of logs that do not repeat, of the torque.
+pub(super) const NOISE: usize = 6;
+/// Number of what no form of a law explains, of the law.
+pub(super) const LAWS: usize = 7;
+/// Number of what a written model misses: of the torque, alike at all frequencies.
+pub(super) const WRITTEN: usize = 8;
 /// Longest step of a logarithm.
 const LONGEST: f64 = 1.2;
 /// Sizes of a joint.
@@ -43,9 +54,9 @@ const LONGEST: f64 = 1.2;
 pub(in crate::gap) struct JointSizes {
     /// Groups of everyday errors.
     pub groups: Vec<(Group, Size)>,
-    /// Share of the torque that no function explains, in logs now and in the baseline; noise of
-    /// logs that do not repeat, a share of the torque.
-    pub error: [Size; 8],
+    /// Share of the torque that no function explains, in logs now and in the baseline, by range of
+    /// frequencies; then those that have names.
+    pub error: [Size; 9],
 }
 
 /// Sizes of all joints.
@@ -72,9 +83,11 @@ impl JointSizes {
             groups.push((*group, size));
         }
         let error = Size::new(t.error, t.error_spread);
-        let noise = Size::new(t.white, t.white_spread);
-        let law = Size::new(t.law_error, t.form_spread);
-        JointSizes { groups, error: [error, error, error, error, error, error, noise, law] }
+        let mut all = [error; 9];
+        all[NOISE] = Size::new(t.white, t.white_spread);
+        all[LAWS] = Size::new(t.law_error, t.form_spread);
+        all[WRITTEN] = Size::fixed(NONE);
+        JointSizes { groups, error: all }
     }
 
     /// The size of a group; 1 for one without a size.
@@ -105,19 +118,23 @@ impl JointSizes {
 /// Sizes of a model of the logs as they are now, without everyday errors: what it misses is error.
 pub(super) fn without_everyday(design: &Design) -> Sizes {
     let mut all = usual(design);
-    let fixed = |value: f64| Size { value, median: value, spread: NONE };
     for joint in &mut all {
-        joint.groups.push((Group::Fixed, fixed(NONE)));
+        joint.groups.push((Group::Fixed, Size::fixed(NONE)));
         // A model that jumps at a reversal is right elsewhere.
         let is_there = |group: &Group| *group == Group::Smooth(Variable::Reversal);
         for (_, size) in joint.groups.iter_mut().filter(|(group, _)| !is_there(group)) {
-            *size = fixed(NONE);
+            *size = Size::fixed(NONE);
         }
-        joint.error[3..6].fill(fixed(1.0 / NONE));
+        joint.error[3..6].fill(Size::fixed(1.0 / NONE));
+        joint.error[..3].fill(Size::fixed(NONE));
+        joint.error[LAWS] = Size::fixed(NONE);
+        joint.error[WRITTEN] = Size::new(MISSED[0], MISSED[1]);
     }
     all
 }
 
+/// Median and spread \[ln\] of what a written model misses, of the torque.
+const MISSED: [f64; 2] = [0.01, 1.0];
 /// The size of a group that is not there; logs of the baseline have an error that is so much larger
 /// than their torques.
 const NONE: f64 = 1e-6;
