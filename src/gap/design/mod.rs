@@ -5,6 +5,7 @@
 //! band of frequencies, one variance.
 
 mod basis;
+mod brought;
 mod column;
 mod everyday;
 mod joint;
@@ -14,10 +15,11 @@ mod piece;
 mod problem;
 mod set;
 
+pub(in crate::gap) use brought::BroughtEffect;
 pub(in crate::gap) use everyday::Group;
 pub(in crate::gap) use joint::{Cell, JointDesign};
 pub(in crate::gap) use packed::Packed;
 pub(in crate::gap) use parameters::Parameters;
-pub(in crate::gap) use piece::{BroughtEffect, PieceRows, Times, Whole, link_pieces, piece_rows};
+pub(in crate::gap) use piece::{PieceRows, Times, Whole, link_pieces, piece_rows};
 pub(in crate::gap) use problem::Design;
 pub(in crate::gap) use set::Set;

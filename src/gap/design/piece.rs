@@ -4,6 +4,7 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::basis::{Functions, fades, functions, rms};
+use super::brought::{Brought, BroughtEffect};
 use super::column::{Column, Piece, columns_at, pieces};
 use super::problem::Design;
 use super::set::Set;
@@ -277,13 +278,8 @@ impl PieceRows {
     /// one was.
     pub(in crate::gap) fn bound(&mut self, factors: &[f64], model: &Model) -> bool {
         let mut is_beyond = false;
-        let brought = self.brought.iter().flat_map(|of| {
-            let parameters = of.effect.parameters.iter().zip(&of.usual);
-            parameters.map(|(parameter, usual)| (parameter, usual, of.joint))
-        });
-        for (k, (parameter, usual, joint)) in (self.own..).zip(brought) {
-            let there = parameter.there.and_then(|of| of(model, joint));
-            let least = there.map_or(f64::NEG_INFINITY, |there| -there / usual);
+        let least = self.brought.iter().flat_map(|of| of.least(model));
+        for (k, least) in (self.own..).zip(least) {
             if factors[k] < least - FIXED {
                 self.prior[k] = (least, FIXED);
                 is_beyond = true;
@@ -409,27 +405,6 @@ impl PieceRows {
     }
 }
 
-/// An effect that another one brings along to a joint; all its coordinates are linear.
-#[derive(Clone)]
-pub(in crate::gap) struct BroughtEffect {
-    /// The effect.
-    pub effect: &'static Effect,
-    /// Joint, from 0.
-    pub joint: usize,
-    /// Usual values of its coordinates.
-    pub usual: Vec<f64>,
-    /// Standard parameters of the model that it changes.
-    pub parameters: Vec<usize>,
-}
-
-/// Columns that an effect brings along.
-#[derive(Default)]
-struct Brought {
-    prior: Vec<(f64, f64)>,
-    rows: Vec<(usize, DMatrix<f64>)>,
-    effects: Vec<BroughtEffect>,
-}
-
 /// The columns of the effects that an effect brings along.
 fn brought_rows(
     design: &Design,
@@ -449,8 +424,7 @@ fn brought_rows(
         let of = to_rows(design, records, brought, first);
         let before = all.prior.len();
         all.prior.extend(of.prior);
-        let parameters = changed_by(brought, joint, records);
-        all.effects.push(BroughtEffect { effect: brought, joint, usual: of.shape, parameters });
+        all.effects.extend(BroughtEffect::new(brought, joint, of.shape, records));
         for (at, rows) in of.rows {
             match all.rows.iter_mut().find(|(known, _)| *known == at) {
                 Some((_, known)) => {
@@ -465,27 +439,6 @@ fn brought_rows(
         }
     }
     all
-}
-
-/// The standard parameters of a joint that an effect changes.
-fn changed_by(effect: &Effect, joint: usize, records: &[Record<'_>]) -> Vec<usize> {
-    let (Some(model), Form::Model(change)) =
-        (records.first().map(|of| of.motion.model), effect.form)
-    else {
-        return Vec::new();
-    };
-    let mut changed = model.clone();
-    change(&mut changed, joint, &vec![1.0; effect.coordinates.len()]);
-    let of = |model: &Model| {
-        [
-            model.friction.viscous[joint],
-            model.friction.coulomb[joint],
-            model.sensors.torque_offset[joint],
-        ]
-    };
-    let first = RIGID * model.dof + JOINT * joint + 1;
-    let pairs = of(model).into_iter().zip(of(&changed)).enumerate();
-    pairs.filter(|(_, (a, b))| a != b).map(|(k, _)| first + k).collect()
 }
 
 fn to_rows(
