@@ -109,7 +109,7 @@ tunables! {
     least_change = 0.005, "1", "chosen on data/gap_cases";
     /// The same, of the everyday error of the joint.
     over_everyday = 1.0, "1", "derived: what is less is everyday";
-    /// The same, of what is left where that is more than any everyday error.
+    /// The same at most, of what is left where that is more than any everyday error.
     over_unexplained = 3.0, "1", "derived: nine tenths of the squares are explained";
     /// Largest everyday error, of the torque.
     usual_error = 0.03, "1", "derived: 0.2 to 3 % of the torque";

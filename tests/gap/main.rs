@@ -395,7 +395,7 @@ fn friction_and_rotor_inertia_of_a_wrist_do_not_become_negative() {
         deviations: vec![0.1; 4],
     };
     let none = DVector::zeros(0);
-    let improved = Improved::new(&nominal, [&none, &none], &[fitted]).applied;
+    let improved = Improved::new(&nominal, [&none, &none], [&[], &[fitted]]).applied;
     assert!((improved.wrist.coupling - nominal.wrist.coupling + 0.4).abs() < 1e-12);
     assert_eq!([improved.friction.coulomb[5], improved.friction.viscous[5]], [0.0; 2]);
     assert!(improved.motors.unwrap().rotor_inertia[5].abs() < 1e-12);
@@ -413,8 +413,9 @@ fn a_diagnosed_load_is_added_to_the_listed_one() {
         deviations: vec![0.1; LOAD.len()],
     };
     let none = DVector::zeros(0);
-    let loaded =
-        |model: &Model| Improved::new(model, [&none, &none], std::slice::from_ref(&fitted)).written;
+    let loaded = |model: &Model| {
+        Improved::new(model, [&none, &none], [&[], std::slice::from_ref(&fitted)]).written
+    };
     let twice = loaded(&loaded(&irb1600()));
     for (name, expected) in [("mass", 2.0 * LOAD[0]), ("com_z", LOAD[3] / LOAD[0])] {
         let (_, given) = twice.effects[0].values.iter().find(|(of, _)| of == name).unwrap();
@@ -470,7 +471,7 @@ fn impossible_bodies_are_replaced_by_possible_ones_with_the_same_torques() {
     let at = RIGID * 4 + 4;
     let mut change = DVector::zeros(count);
     change[at] = -1.2 * wanted[at];
-    let found = Improved::new(&nominal, [&change, &sizes], &[]).written;
+    let found = Improved::new(&nominal, [&change, &sizes], [&[], &[]]).written;
     assert!(found.links.iter().all(|link| link.mass > 0.0 && link.is_consistent()));
     assert_ne!(found.links, nominal.links);
     wanted[at] *= -0.2;

@@ -119,11 +119,9 @@ pub(in crate::gap) fn decide(
             let joint = piece.fitted.joint;
             let at = joint.map_or(id.to_owned(), |joint| format!("{id} of joint {}", joint + 1));
             let left = left(found, joint.unwrap_or(piece.most));
-            let over = if left > tunables.usual_error {
-                tunables.over_unexplained
-            } else {
-                tunables.over_everyday
-            };
+            // The more any error is beyond a usual one, the less it leaves to judge by.
+            let over = (left / tunables.usual_error)
+                .clamp(tunables.over_everyday, tunables.over_unexplained);
             let least = least.max(over * left);
             let confused = beside_confused(search, found, &weighed, [number, k]);
             let is_quiet = joint.is_none_or(|joint| !noisy.contains(&joint));

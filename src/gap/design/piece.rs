@@ -8,7 +8,7 @@ use super::brought::{Brought, BroughtEffect};
 use super::column::{Column, Piece, columns_at, pieces};
 use super::problem::Design;
 use super::set::Set;
-use crate::arm::dynamics::{JOINT, RIGID};
+use crate::arm::dynamics::RIGID;
 use crate::arm::effects::{self, Coordinate, Effect, Form, Motion, Nature, Role, Scope};
 use crate::arm::robot::Model;
 use crate::gap::data::{Record, RecordKind};

@@ -18,7 +18,7 @@ use self::cases::{labels, options, read, write_cases};
 use self::family::family;
 use super::common::{self, Format};
 use super::{diagnose, output};
-use crate::examine::blind::{self, Asked, FAMILY, Grades, KEY, Label, SEALS, Sealed, Settings};
+use crate::examine::blind::{self, Asked, FAMILY, Grades, KEY, Label, SEALS, Settings};
 use crate::examine::worlds::{self, World};
 use crate::tool::report::html::grades_report;
 
