@@ -41,7 +41,9 @@ impl Improved {
     ) -> Improved {
         let mut written = model.clone();
         refit(&mut written, change, sizes);
-        brought.iter().for_each(|of| of.change(&mut written));
+        for of in brought {
+            of.change(&mut written);
+        }
         let mut result = Improved::of(written);
         // What dry friction there is bounds how far it may fall.
         let is_parameter = |of: &&Fitted| of.effect.nature != Nature::Law;
