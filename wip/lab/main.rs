@@ -19,6 +19,7 @@ fn finding(of: &Finding) -> Value {
       "parameters": of.parameters.iter().map(|p| format!("{} {:.4}±{:.4}", p.name, p.value, p.sd)).collect::<Vec<_>>()})
 }
 fn main() {
+    if let Ok(seed) = std::env::var("JP_LABELS") { use joulepath::examine::blind; let seed: u64 = seed.parse().unwrap(); for n in 1..=70 { let st = blind::Settings { cycles: 4, period_s: 5.0, ..blind::Settings::new(seed) }; let Some(c) = blind::case(&st, n) else { continue }; let ids: Vec<String> = c.label.effects.iter().map(|e| format!("{}:{:.0}", e.id, e.nats)).collect(); println!("{seed} {n} {} {:?}", c.label.trust, ids); if ids.is_empty() { continue } let d = format!("/tmp/claims/{seed}_{n}"); std::fs::create_dir_all(&d).unwrap(); for (f, t) in &c.files { let p = format!("{d}/{f}"); std::fs::create_dir_all(std::path::Path::new(&p).parent().unwrap()).unwrap(); std::fs::write(p, t).unwrap(); } std::fs::remove_file(format!("{d}/case.json")).ok(); std::fs::write(format!("{d}/command.txt"), format!("diagnose --robot nominal.toml --log log-1.csv --log heldout.csv --heldout log-2.csv --trust {} --period 5", c.label.trust)).unwrap(); } return; }
     for dir in std::env::args().skip(1) {
         let cmd = match std::fs::read_to_string(format!("{dir}/case.json")) {
             Ok(t) => {
@@ -49,7 +50,7 @@ fn main() {
         if cut.iter().any(|c| *c > 1.01 * least) { (train, held, before) = (r("log", Some(least)), r("heldout", Some(least)), r("baseline", Some(least))); }
         if held.is_empty() && train.len() > 1 { held.extend(train.pop()); }
         let t1 = t0.elapsed().as_secs_f64();
-        let settings = Settings { trust, effects: arm::effects::ALL.iter().filter(|e| e.id != "apparent_torque" && std::env::var("EFFECTS").map_or(true, |l| l.split(',').any(|x| x == e.id))).collect(), tunables: Tunables::DEFAULT };
+        let settings = Settings { trust, effects: arm::effects::ALL.iter().filter(|e| e.id != "apparent_torque" && std::env::var("EFFECTS").map_or(true, |l| l.split(',').any(|x| x == e.id))).collect(), tunables: { let mut t = Tunables::DEFAULT; if let Ok(x) = std::env::var("HELD") { t.left_in_heldout = x.parse().unwrap(); } t } };
         let refs = |x: &'static [Samples]| -> Vec<&'static Samples> { x.iter().collect() };
         let (train, held, before): (&'static [Samples], &'static [Samples], &'static [Samples]) = (train.leak(), held.leak(), before.leak());
         let (a, b, c) = (refs(train), refs(held), refs(before));
@@ -59,6 +60,7 @@ fn main() {
         let laps = std::cell::RefCell::new(vec![]);
         let t = std::time::Instant::now();
         let d = gap::diagnose_logs(&model, Logs { train: &a, held: &b, before: &c }, &settings, &|p| laps.borrow_mut().push((p.name(), (t.elapsed().as_secs_f64()*100.0).round()/100.0)));
+        if let Ok(j) = std::env::var("JP_LEFT") { let j: usize = j.parse().unwrap(); for r in gap::Record::all(&d.improved.applied, if std::env::var("ON_HELD").is_ok() { &held[0] } else { &train[0] }).iter().take(1) { let m = &r.motion; for i in 0..m.rows() { println!("{} {} {} {} {} {} {} {}", m.t[i], m.q[j][i], m.qd[j][i], m.qd[(j+1)%6][i], m.qdd[j][i], r.modelled[j][i], r.measured[j][i], r.moves(j, i) as u8); } } return; }
         let n = d.shrink.joints.len();
         println!("{}", json!({"case": dir, "verdict": d.verdict.name(), "effects": d.effects.iter().map(finding).collect::<Vec<_>>(), "candidates": d.candidates.iter().map(finding).collect::<Vec<_>>(),
           "everyday": d.everyday.iter().map(|x| (x*1e4).round()/100.0).collect::<Vec<_>>(), "remainder": d.remainder.iter().map(|r| format!("{} J{} {:.3}", r.id, r.joint+1, r.share)).collect::<Vec<_>>(),
