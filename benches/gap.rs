@@ -27,7 +27,11 @@ fn bench(criterion: &mut Criterion) {
         let is_run = |case: &Case| case.files.iter().any(|(name, _)| name.contains('/'));
         let case = cases.find(|case| case.label.kind == kind && !is_run(case)).unwrap();
         let input = examined(&case, &settings);
-        let settings = gap::Settings { trust: input.trust, effects: ALL.iter().collect() };
+        let settings = gap::Settings {
+            trust: input.trust,
+            effects: ALL.iter().collect(),
+            tunables: gap::Tunables::DEFAULT,
+        };
         group.bench_function(format!("diagnose_{}", kind.name()), |bencher| {
             bencher.iter(|| {
                 let train = records(black_box(&input.nominal), &input.train);

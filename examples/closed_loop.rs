@@ -43,7 +43,11 @@ fn main() {
             continue;
         }
         let input = examined(&case, &settings);
-        let options = gap::Settings { trust: input.trust, effects: ALL.iter().collect() };
+        let options = gap::Settings {
+            trust: input.trust,
+            effects: ALL.iter().collect(),
+            tunables: gap::Tunables::DEFAULT,
+        };
         let heldout = records(&input.nominal, &input.heldout);
         let found =
             diagnose(&input.nominal, records(&input.nominal, &input.train), &heldout, &options);

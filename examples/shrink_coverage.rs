@@ -74,7 +74,7 @@ fn held(settings: &Settings, number: usize) -> Option<(usize, Held, bool)> {
     let case = blind::case(settings, number).filter(|case| case.label.kind != Kind::Power)?;
     let input = examined(&case, settings);
     let effects = case.label.effects.iter().filter_map(|truth| find(&truth.id)).collect();
-    let options = gap::Settings { trust: input.trust, effects };
+    let options = gap::Settings { trust: input.trust, effects, tunables: gap::Tunables::DEFAULT };
     let heldout = records(&input.nominal, &input.heldout);
     let found = diagnose(&input.nominal, records(&input.nominal, &input.train), &heldout, &options);
     let models = [&input.nominal, &found.refit.applied, &found.improved.applied];

@@ -65,7 +65,8 @@ fn case(seed: u64, number: usize) -> Case {
     blind::case(&settings, number).unwrap()
 }
 
-/// Verifies the claims for an examination case with the effect `id`; returns the reduction, %.
+/// Verifies the claims for an examination case in which the effect `id` is asserted; returns the
+/// reduction, %. How often effects are asserted is the examination's subject, not this one's.
 fn check_case(seed: u64, number: usize, id: &str) -> f64 {
     let case = case(seed, number);
     assert!(case.label.effects.iter().any(|truth| truth.id == id), "{:?}", case.label.effects);
@@ -123,12 +124,12 @@ fn claims_hold_for_a_payload() {
 
 #[test]
 fn claims_hold_for_stiction() {
-    check_case(14, 40, "stribeck");
+    check_case(15, 45, "stribeck");
 }
 
 #[test]
 fn claims_hold_for_a_time_delay() {
-    check_case(12, 38, "time_delay");
+    check_case(22, 28, "time_delay");
 }
 
 #[test]
@@ -155,7 +156,7 @@ fn claims_hold_for_an_encoder_offset() {
 
 #[test]
 fn claims_hold_for_a_tilted_base() {
-    check_case(12, 13, "base_tilt");
+    check_case(12, 12, "base_tilt");
 }
 
 #[test]
@@ -173,7 +174,7 @@ fn claims_hold_for_a_coupled_wrist_with_smooth_friction() {
 
 #[test]
 fn claims_hold_for_a_dragging_brake() {
-    check_case(13, 35, "brake_drag");
+    check_case(14, 14, "brake_drag");
 }
 
 #[test]

@@ -72,7 +72,14 @@ const WINGS: [Wing; 7] = [
         ],
     ),
     wing("gap", &[room("gap", &["robot", "dynamics", "effects", "log", "identify"])]),
-    wing("examine", &[room("blind", &["robot"])]),
+    wing(
+        "examine",
+        &[
+            room("blind", &["robot"]),
+            room("injected", &["robot", "dynamics", "log", "identify", "blind"]),
+            room("worlds", &["blind"]),
+        ],
+    ),
     wing(
         "tool",
         &[

@@ -8,6 +8,8 @@
 mod controller_runs;
 #[path = "shared_data/diagnosis.rs"]
 mod diagnosis;
+#[path = "shared_data/injected.rs"]
+mod injected;
 #[path = "support/measurements.rs"]
 mod measurements;
 #[path = "support/real_logs.rs"]

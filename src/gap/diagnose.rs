@@ -1,47 +1,33 @@
-//! From records to a verdict.
+//! From logs to a diagnosis of torques.
 
-use nalgebra::DVector;
-
-use crate::arm::effects::Effect;
-use crate::arm::robot::Model;
-
-use super::calibration::calibrate;
-use super::chosen::{Chosen, Found};
-use super::column::{Owner, pieces};
+use super::data::{Record, RecordKind};
+use super::decision::{
+    Candidate, Decision, Finding, Found, Gate, Search, Tried, Verdict, decide, may_name_parameters,
+};
+use super::design::{Design, PieceRows};
 use super::diagnosis::Diagnosis;
-use super::effect_ids::{OF_TIME, OF_TURNS};
-use super::findings::{Anything, Said, Verdict};
-use super::gated::gated;
-use super::generic::OF_DRIFT;
-use super::heldout::{JointGap, Shrink, predicted, shrink};
-use super::improved::Improved;
-use super::judged::{CLASS, FLIP, Judged, LEAST_NATS, judged};
-use super::nuisance::Trust;
+use super::grade::{JointGap, Shrink, budget, places, places_missed, shrink};
+use super::model::{Improved, written};
 use super::phase::Phase;
-use super::places::{places, places_missed};
-use super::record::{Record, RecordKind};
-use super::search::Search;
-use super::table::{Table, nuisances};
+use super::sign::{Turned, is_opposite};
+use super::trust::Trust;
+use super::tunables::Tunables;
+use crate::arm::dynamics::Load;
+use crate::arm::effects::{Acts, Effect, Nature, Scope};
+use crate::arm::robot::Model;
+use crate::learn::identify::Samples;
 
-/// Errors of the model that are tried.
-const ERRORS: [f64; 4] = [0.0015, 0.005, 0.015, 0.045];
-/// Share of a joint's torque below which functions of no law are the model's own error.
-const SMALL: f64 = 0.005;
-/// Share of the torques below which a model without a gap is right.
-const RIGHT: f64 = 0.02;
-/// What effects may leave of the logs that they were fitted to, to be there whatever they take off
-/// of other logs.
-const EXPLAINS: f64 = 0.35;
-/// Correlation of a torque with the model's below which its sign may be the other one.
-const OPPOSITE: f64 = -0.3;
-
+/// Everyday error of held-out data, of the torque.
+const EVERYDAY: f64 = 0.01;
+/// Part of the gap by which other parameters alone may change it.
+const NO_WORSE: f64 = 0.01;
 /// Share of a joint's torque that no model of this robot misses.
 const HOPELESS: f64 = 0.4;
-/// Correlation with the best model's below which torques are hardly those of this robot.
-const ALIKE: f64 = 0.5;
 /// Range \[rad\] and share of the rows in which a joint has to move.
 const FAR: f64 = 0.05;
 const OFTEN: f64 = 0.1;
+/// Share of the torques below which a model without a gap is right.
+const RIGHT: f64 = 0.02;
 
 /// How a diagnosis is made.
 pub struct Settings {
@@ -49,9 +35,76 @@ pub struct Settings {
     pub trust: Trust,
     /// Effects that may be found.
     pub effects: Vec<&'static Effect>,
+    /// The chosen numbers of the method.
+    pub tunables: Tunables,
 }
 
-/// Diagnoses the records `train`, graded by `held`, where `model` is compared, too.
+/// Logs of a robot.
+#[derive(Clone, Copy)]
+pub struct Logs<'a> {
+    /// Those that show it as it is now.
+    pub train: &'a [&'a Samples],
+    /// Those that only grade; without them, the same.
+    pub held: &'a [&'a Samples],
+    /// Those from when the model was believed true.
+    pub before: &'a [&'a Samples],
+}
+
+/// Diagnoses what has changed since the baseline, or, without one, all that the model has not;
+/// `tell` is called with each phase that begins.
+#[must_use]
+pub fn diagnose_logs(
+    model: &Model,
+    logs: Logs<'_>,
+    settings: &Settings,
+    tell: &dyn Fn(Phase),
+) -> Diagnosis {
+    let held = if logs.held.is_empty() { logs.train } else { logs.held };
+    tell(Phase::Baseline);
+    let known = robot_of(model, logs.before, settings);
+    let (believed, before) = known.unwrap_or_else(|| (Improved::same(model), Vec::new()));
+    let mut train = all(&believed.applied, logs.train);
+    train.extend(logs.before.iter().flat_map(|log| Record::before(&believed.applied, log)));
+    let held = all(&believed.applied, held);
+    let found = diagnose_telling([model, &believed.written], train, &held, settings, tell);
+    Diagnosis { before, ..found }
+}
+
+/// The robot of a baseline that differs from the model by more than everyday errors, with the effects
+/// that it has already.
+fn robot_of(
+    model: &Model,
+    before: &[&Samples],
+    settings: &Settings,
+) -> Option<(Improved, Vec<Finding>)> {
+    if before.is_empty() {
+        return None;
+    }
+    let mut records = all(model, before);
+    let design = with_loads(&mut records, settings);
+    let refit = refitted(model, (&design, &records));
+    let held = all(model, before);
+    let gaps = shrink(&held, [model, &refit.applied, &refit.applied]);
+    let is_everyday = |of: &JointGap| of.refit <= settings.tunables.usual_error * of.torque;
+    if gaps.joints.iter().all(is_everyday) {
+        return None;
+    }
+    let none = Search::none_of(&design)?;
+    // Robots warm up differently each day.
+    let effects = nameable(&records, settings).into_iter().filter(|of| of.acts != Acts::OverTime);
+    let search = Search::new(&records, &design, &effects.collect::<Vec<_>>());
+    let (none, found, tried) = search.best(none);
+    let models = Models { nominal: model, believed: model, refit: &refit, turned: None };
+    let Graded { decision, best, .. } = graded(&search, [&none, &found], &tried, &held, &models);
+    (!decision.effects.is_empty()).then_some((best, decision.effects))
+}
+
+fn all<'m>(model: &'m Model, logs: &[&Samples]) -> Vec<Record<'m>> {
+    logs.iter().flat_map(|log| Record::all(model, log)).collect()
+}
+
+/// Diagnoses the records `train`, graded by `held`.
+#[cfg(feature = "internals")]
 #[must_use]
 pub fn diagnose(
     model: &Model,
@@ -59,220 +112,257 @@ pub fn diagnose(
     held: &[Record<'_>],
     settings: &Settings,
 ) -> Diagnosis {
-    diagnose_telling(model, train, held, settings, &|_| {})
+    diagnose_telling([model, model], train, held, settings, &|_| {})
 }
 
-/// The same; `tell` is called with each phase that begins.
-#[must_use]
-pub fn diagnose_telling(
-    model: &Model,
+/// The same of a nominal model, with that of the baseline, of which the records are; `tell` is called
+/// with each phase that begins.
+fn diagnose_telling(
+    [model, believed]: [&Model; 2],
     mut train: Vec<Record<'_>>,
     held: &[Record<'_>],
     settings: &Settings,
     tell: &dyn Fn(Phase),
 ) -> Diagnosis {
-    tell(Phase::Channel);
-    // With a baseline the robot was more than the model has.
-    let believed = train.first().map_or(model, |record| record.motion.model);
-    let flipped = flip(&mut train, settings);
-    carry(&mut train, settings, believed);
-    let mut searched = search(&train, settings, believed, tell);
-    let coupling = searched.search.rounded_coupling(&searched.found);
-    // What is there at turns can't be told without them.
-    let is_of_moving = |effect: &&'static Effect| !OF_TURNS.contains(&effect.id);
-    let effects = settings.effects.iter().copied().filter(is_of_moving).collect();
-    let (of_moving, mut settings) = (Settings { effects, ..*settings }, settings);
-    if let Some(coupling) = coupling {
-        drop(searched);
-        for record in &mut train {
-            record.leave_out_turns(coupling);
-        }
-        settings = &of_moving;
-        searched = search(&train, settings, believed, tell);
+    tell(Phase::Design);
+    // Parameters that are fitted to torques with the other sign are far off.
+    let turned = if is_opposite(&train) { turned(&train, settings) } else { None };
+    if let Some(turned) = &turned {
+        turned.turn_back(&mut train);
     }
-    if let Some(loaded) = searched.search.loaded(&searched.found, believed) {
-        drop(searched);
-        for record in train.iter_mut().filter(|record| record.kind != RecordKind::Before) {
-            record.motion.go_by(&loaded);
-        }
-        searched = search(&train, settings, believed, tell);
+    let design = with_loads(&mut train, settings);
+    tell(Phase::Search);
+    let mut effects = nameable(&train, settings);
+    effects.retain(|effect| !effect.coordinates.is_empty());
+    let search = Search::new(&train, &design, &effects);
+    let Some(none) = Search::none_of(&design) else { return Diagnosis::failed(model, held) };
+    let (none, found, tried) = search.best(none);
+    tell(Phase::Decision);
+    let plain = refitted(believed, (&design, &train));
+    let refit = turned.as_ref().map_or_else(|| plain.clone(), |of| of.added_to(&plain));
+    let models = Models { nominal: model, believed, refit: &refit, turned: turned.as_ref() };
+    let Graded { mut decision, mut best, shrink: mut graded } =
+        graded(&search, [&none, &found], &tried, held, &models);
+    if let Some(finding) = turned.as_ref().and_then(Turned::finding) {
+        decision.add(finding);
+        graded = shrink(held, [model, &plain.applied, &best.applied]);
     }
-    let Searched { mut search, mut found, chance, refit } = searched;
-    let errors = errors(&search);
-    let of_time = joints_of_time(&search, &found);
-    if !of_time.is_empty() {
-        tell(Phase::Windows);
-        let more = gated(&settings.effects, &train, &of_time);
-        let table = Table::new(&train, &settings.effects, settings.trust, more);
-        let (error, channels, late) = (search.error, search.channels.clone(), search.late);
-        search = Search::new(&train, table, settings.trust, error);
-        search.late = late;
-        search.set_channels(&channels);
-        search.match_excess(&[]);
-        // With windows less may be the model's error.
-        if !search.is_open() {
-            search.choose_error(errors);
-        }
-        // First what has a window, then what that leaves.
-        let banned = search.banned.clone();
-        search.banned.extend(OF_TIME);
-        found = search.run_gated(errors);
-        search.banned = banned;
-        found = search.run_from(found);
-        if search.lower_error(&mut found, errors) {
-            found = search.run_from(found);
-        }
-    }
-    tell(Phase::Shapes);
-    found = search.name_functions(found);
-    search.simplify(&mut found, CLASS);
-    // What a law is worth shows where nothing else follows its form.
-    let mut laws = search.without_forms(&found);
-    let mut polished = search.polish(&laws);
-    if let Some(of) = &polished
-        && search.strike(&mut found, of, &[])
-    {
-        // Another law may have its place.
-        let next = search.run_from(found);
-        found = search.name_functions(next);
-        search.simplify(&mut found, CLASS);
-        laws = search.without_forms(&found);
-        polished = search.polish(&laws);
-    }
-    let mut judged = judged(&search, &found, polished.as_ref(), chance);
-    if let Some(late) = search.late.filter(|late| late.nats > LEAST_NATS) {
-        judged.assert_late(&late);
-    }
-    for joint in &flipped {
-        judged.assert_flipped(*joint);
-    }
-    let of_parameters = search.with_parameters(believed, &found, &judged);
-    let asserted = search.with_asserted(believed, &found, &judged, &flipped);
+    let refit = plain;
     tell(Phase::Grading);
-    // What a robot can have may be far from what was fitted: nothing is written that misses more
-    // than before of what it was fitted to.
-    let none = better(&train, Improved::same(believed), refit);
-    let with_parameters = |changed: Option<Improved>| match changed {
-        Some(changed) if flipped.is_empty() => better(&train, none.clone(), changed),
-        _ => none.clone(),
-    };
-    let mut refit = with_parameters(of_parameters);
-    // Flipped torques were turned round for the fit: they are no measure of a model that flips.
-    let of_asserted = |asserted: Option<Improved>, refit: &Improved| match asserted {
-        Some(improved) if flipped.is_empty() => better(&train, refit.clone(), improved),
-        Some(improved) => improved,
-        None => refit.clone(),
-    };
-    let graded_with =
-        |of: &Improved, refit: &Improved| shrink(held, [model, &refit.applied, &of.applied]);
-    let mut improved = of_asserted(asserted, &refit);
-    if improved.written == refit.written {
-        judged.doubt_late_joint();
+    let mut reasons = Vec::new();
+    if let Some(why) = refusal(&train, &graded, settings) {
+        decision.withdraw(why.verdict);
+        reasons.push(why.reason.to_owned());
+        best = refit.clone();
+        graded = shrink(held, [model, &refit.applied, &best.applied]);
     }
-    let mut graded = graded_with(&improved, &refit);
-    let is_foreign =
-        || is_hopeless(&graded) || is_unlike(&train, &improved) || is_other_body(&graded, &judged);
-    if settings.trust != Trust::Unknown && is_foreign() {
-        judged.withdraw(
-            Verdict::Unknown,
-            "the torques are hardly those of this robot: check --robot, the order of the joints \
-             and the units",
-        );
-        improved = refit.clone();
-        graded = graded_with(&improved, &refit);
-    } else if let Some(less) = judged.without_idle(&graded) {
-        let of_less = with_parameters(search.with_parameters(believed, &found, &less));
-        let asserted = search.with_asserted(believed, &found, &less, &flipped);
-        let plainer = of_asserted(asserted, &of_less);
-        // What explains most of the logs is there, however far its form holds beyond them, unless it
-        // is doubtful anyway.
-        let is_doubtful =
-            judged.leaves_far_more(&graded) || !judged.effects.iter().all(Said::is_likely);
-        if is_doubtful || missed(&train, &improved) > EXPLAINS * missed(&train, &plainer) {
-            (judged, improved, refit) = (less, plainer, of_less);
-            graded = graded_with(&improved, &refit);
-        }
-    }
-    if judged.is_refuted(&graded) {
-        judged.withdraw(
-            Verdict::Unknown,
-            "data that took no part is missed more with what was found than without it",
-        );
-        improved = refit.clone();
-        graded = graded_with(&improved, &refit);
-    }
-    if judged.effects.is_empty() && 2 * excited(&train) < model.dof {
-        judged.withdraw(
-            Verdict::NotExcited,
-            "most joints hardly move: log a motion of joulepath excite",
-        );
-    }
-    let mut verdict = judged.verdict;
     let used = graded.joints.iter().filter(|joint| joint.torque > 0.0);
     let most = used.map(|joint| joint.model / joint.torque).fold(0.0, f64::max);
-    if verdict == Verdict::ParametersOnly && judged.candidates.is_empty() && most < RIGHT {
-        verdict = Verdict::NoGap;
+    if decision.verdict == Verdict::ParametersOnly && most < RIGHT {
+        decision.verdict = Verdict::NoGap;
     }
-    // No model is right to the last digit.
-    let drifts = judged.anything.iter().any(|of| OF_DRIFT.contains(&of.id));
-    if verdict == Verdict::Unknown && !judged.anything.is_empty() && !drifts {
-        let left = shrink(&train, [believed, &refit.applied, &refit.applied]).joints;
-        let is_small = |of: &JointGap| of.refit < SMALL * of.torque;
-        let is_small = |of: &Anything| of.joint.is_some_and(|joint| is_small(&left[joint]));
-        if judged.anything.iter().all(is_small) {
-            verdict = Verdict::ParametersOnly;
-        }
-    }
-    calibrate(&mut judged.effects, &mut judged.candidates);
-    let asserted: Vec<&'static str> = judged.effects.iter().map(|said| said.effect.id).collect();
-    let places = if asserted.is_empty() && verdict == Verdict::Unknown {
+    let ids: Vec<&'static str> = decision.effects.iter().map(|of| of.effect.id).collect();
+    let places = if ids.is_empty() && decision.verdict == Verdict::Unknown {
         places_missed(&train, &refit)
     } else {
-        places(&train, believed, [&refit, &improved], &asserted)
+        places(&train, model, [&refit, &best], &ids)
     };
     Diagnosis {
-        verdict,
+        verdict: decision.verdict,
+        budget: budget(held, model, [&refit, &best], &ids),
+        effects: decision.effects,
+        candidates: decision.candidates,
+        remainder: decision.remainder,
+        trail: decision.trail,
+        everyday: decision.everyday,
         places,
-        effects: judged.effects,
-        candidates: judged.candidates,
-        anything: judged.anything,
         shrink: graded,
-        error: search.error,
-        chance,
         refit,
-        improved,
-        reasons: judged.reasons,
+        improved: best,
+        reasons,
         channels: Vec::new(),
-        before: None,
+        before: Vec::new(),
     }
+}
+
+/// Models that a decision is compared with.
+struct Models<'a> {
+    nominal: &'a Model,
+    /// As the baseline shows it.
+    believed: &'a Model,
+    /// With other parameters.
+    refit: &'a Improved,
+    /// Torques that are turned round.
+    turned: Option<&'a Turned>,
+}
+
+/// A decision with the model that comes of it.
+struct Graded {
+    decision: Decision,
+    best: Improved,
+    shrink: Shrink,
+}
+
+/// Decides; effects that leave the gap in the held-out data as it is are not asserted.
+fn graded(
+    search: &Search<'_>,
+    [none, found]: [&Found; 2],
+    tried: &[Tried],
+    held: &[Record<'_>],
+    models: &Models<'_>,
+) -> Graded {
+    let mut found = found.clone();
+    let mut trail = Vec::new();
+    let mut withdrawn = Vec::new();
+    loop {
+        let mut decision = decide(search, none, &found, tried);
+        decision.asserted = search.shaped_as_written(&decision.asserted);
+        let of =
+            |best: &Improved| shrink(held, [models.nominal, &models.refit.applied, &best.applied]);
+        let mut best = models.with(search, &decision.asserted);
+        let mut graded = of(&best);
+        if decision.asserted.iter().any(|of| of.effect.acts == Acts::InWindow) {
+            // What acted in windows of some logs need not come again in others.
+            let once =
+                models.with_those(search, &decision.asserted, |of| of.acts != Acts::InWindow);
+            let of_once = of(&once);
+            if of_once.total.value > graded.total.value {
+                (best, graded) = (once, of_once);
+            }
+        }
+        // One at a time: what is of no use beside it may be of use without it.
+        let mut idle: Option<(f64, Finding, Vec<usize>)> = None;
+        let is_written =
+            |of: &&Finding| decision.asserted.iter().any(|a| a.effect.id == of.effect.id);
+        for of in decision.effects.iter().chain(decision.candidates.iter().filter(is_written)) {
+            let limit = left_at_most(of.effect, &search.design.tunables);
+            let gaps = gaps_without(search, &decision, of.effect, held, models, &best);
+            let value = left_by(of, &gaps);
+            let entry = Gate::HeldOut.of(of.effect.id.to_owned(), value, limit);
+            let over = value / limit;
+            if !entry.passed && idle.as_ref().is_none_or(|(most, ..)| over > *most) {
+                let fails = |joint: &usize| left(&[*joint], &gaps.joints) > limit;
+                let joints: Vec<usize> = of.joints.iter().copied().filter(fails).collect();
+                let all = of.effect.scope == Scope::Robot || joints.len() == of.joints.len();
+                idle = Some((over, of.clone(), if all { Vec::new() } else { joints }));
+            }
+            trail.push(entry);
+        }
+        let less = idle.and_then(|(_, of, joints)| {
+            let less = search.without_id(none, &found, (of.effect.id, &joints));
+            if of.effect.nature != Nature::Parameters && joints.is_empty() {
+                withdrawn.push(of);
+            }
+            less
+        });
+        let Some(less) = less else {
+            decision.trail.append(&mut trail);
+            decision.candidates.append(&mut withdrawn);
+            return Graded { decision, best, shrink: graded };
+        };
+        found = less;
+    }
+}
+
+/// The gaps with all effects but one, and with all.
+fn gaps_without(
+    search: &Search<'_>,
+    decision: &Decision,
+    effect: &Effect,
+    held: &[Record<'_>],
+    models: &Models<'_>,
+    best: &Improved,
+) -> Shrink {
+    let mut rest = decision.asserted.clone();
+    rest.retain(|of| of.effect.id != effect.id);
+    let without = models.with(search, &rest);
+    shrink(held, [models.nominal, &without.applied, &best.applied])
+}
+
+impl Models<'_> {
+    /// The model with some effects.
+    fn with(&self, search: &Search<'_>, effects: &[Candidate]) -> Improved {
+        self.with_those(search, effects, |_| true)
+    }
+
+    /// The same, with those effects alone that come again.
+    fn with_those(
+        &self,
+        search: &Search<'_>,
+        effects: &[Candidate],
+        comes_again: impl Fn(&Effect) -> bool,
+    ) -> Improved {
+        if effects.is_empty() {
+            return self.refit.clone();
+        }
+        let logs = (search.design, search.records);
+        let best = written(self.believed, logs, pieces_of(effects), comes_again);
+        self.turned.map_or_else(|| best.clone(), |of| of.added_to(&best))
+    }
+}
+
+/// What an effect may leave of the gap in held-out data.
+fn left_at_most(effect: &Effect, tunables: &Tunables) -> f64 {
+    match (effect.nature, effect.acts) {
+        (Nature::Law, Acts::Always | Acts::AfterReversals) => tunables.left_in_heldout,
+        // Robots warm up differently each day; other links are no finding.
+        (Nature::Law, Acts::OverTime) | (Nature::Parameter | Nature::Parameters, _) => 1.0,
+        // A window that does not come again leaves other logs as they are.
+        (Nature::Law, Acts::InWindow) => 1.0 + NO_WORSE,
+    }
+}
+
+/// What is left of the gap with an effect. One that acts in windows may act in others here: what it
+/// leaves in most blocks counts.
+fn left_by(of: &Finding, gaps: &Shrink) -> f64 {
+    if of.effect.acts != Acts::InWindow {
+        return left(&of.joints, &gaps.joints);
+    }
+    let mut all: Vec<f64> = gaps.blocks.iter().map(|block| left(&of.joints, block)).collect();
+    all.sort_by(f64::total_cmp);
+    all.get(all.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// What is left of the gap at an effect's joints (all: none is listed), of what the refitted model leaves, or of an everyday
+/// error where that is less: parameters may stand in for an effect \[1\].
+fn left(joints: &[usize], gaps: &[JointGap]) -> f64 {
+    let at = |joint: usize| joints.is_empty() || joints.contains(&joint);
+    let used = gaps.iter().enumerate();
+    let used = used.filter(|(joint, gap)| at(*joint) && gap.torque > 0.0);
+    let (mut before, mut after) = (0.0, 0.0);
+    for (_, gap) in used {
+        before += (gap.refit / gap.torque).max(EVERYDAY).powi(2);
+        after += (gap.refit_plus_effect / gap.torque).powi(2);
+    }
+    if before > 0.0 { f64::sqrt(after / before) } else { 0.0 }
+}
+
+/// Why nothing can be said.
+struct Refusal {
+    verdict: Verdict,
+    reason: &'static str,
+}
+
+fn refusal(train: &[Record<'_>], graded: &Shrink, settings: &Settings) -> Option<Refusal> {
+    let dof = train.first().map_or(0, |record| record.motion.model.dof);
+    if 2 * excited(train) < dof {
+        return Some(Refusal {
+            verdict: Verdict::NotExcited,
+            reason: "most joints hardly move: log a motion of joulepath excite",
+        });
+    }
+    (settings.trust != Trust::Unknown && is_hopeless(graded)).then_some(Refusal {
+        verdict: Verdict::Unknown,
+        reason: "the torques are hardly those of this robot: check --robot, the order of the \
+                 joints and the units",
+    })
 }
 
 /// Whether most joints' torques are little like the best model's.
 fn is_hopeless(graded: &Shrink) -> bool {
-    let used = graded.joints.iter().filter(|joint| joint.torque > 0.0);
-    let hopeless =
-        used.clone().filter(|joint| joint.refit_plus_effect > HOPELESS * joint.torque).count();
-    let used = used.count();
-    used > 0 && 2 * hopeless >= used
-}
-
-/// Whether most joints' torques are far from the nominal model's, and other bodies explain more than
-/// the effects do.
-fn is_other_body(graded: &Shrink, judged: &Judged) -> bool {
-    let used = graded.joints.iter().filter(|joint| joint.torque > 0.0);
-    let far = used.clone().filter(|joint| joint.model > HOPELESS * joint.torque).count();
-    let bodies = judged.candidates.iter().filter(|said| said.effect.id == "link_parameters");
-    let bodies = bodies.map(|said| said.nats).fold(0.0, f64::max);
-    let lesser = judged.effects.iter().any(|said| said.nats < bodies);
-    lesser && 3 * far >= 2 * used.count()
-}
-
-/// Whether most joints' torques have little to do with those of the best model.
-fn is_unlike(records: &[Record<'_>], best: &Improved) -> bool {
-    let alike = correlations(records, |record| predicted(record, &best.applied));
-    // Torques that are flipped were turned round.
-    let foreign = alike.iter().filter(|of| of.abs() < ALIKE).count();
-    !alike.is_empty() && 2 * foreign >= alike.len()
+    let used: Vec<&JointGap> = graded.joints.iter().filter(|of| of.torque > 0.0).collect();
+    let is_far = |of: &&&JointGap| of.refit.min(of.refit_plus_effect) > HOPELESS * of.torque;
+    !used.is_empty() && 2 * used.iter().filter(is_far).count() >= used.len()
 }
 
 /// Joints that move far and often enough to show something.
@@ -281,189 +371,75 @@ fn excited(records: &[Record<'_>]) -> usize {
     let dof = means().next().map_or(0, |record| record.motion.model.dof);
     let moves = |joint: &usize| {
         means().any(|record| {
-            let (window, q) = (&record.window[*joint], &record.motion.q[*joint]);
+            let q = &record.motion.q[*joint];
             let low = q.iter().copied().fold(f64::INFINITY, f64::min);
             let high = q.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            let used = window.iter().sum::<f64>() / window.len().max(1) as f64;
-            used > OFTEN && high - low > FAR
+            record.used_share(*joint) > OFTEN && high - low > FAR
         })
     };
     (0..dof).filter(moves).count()
 }
 
-/// The second model where it misses no more of the records than the first one.
-fn better(records: &[Record<'_>], first: Improved, second: Improved) -> Improved {
-    // A sum that is no number is no better.
-    if missed(records, &second) <= missed(records, &first) { second } else { first }
-}
-
-/// Squares that a model misses of the means, of what was measured, summed over the joints.
-fn missed(records: &[Record<'_>], of: &Improved) -> f64 {
-    let means = records.iter().filter(|record| record.kind == RecordKind::Mean);
-    let of_joints = means.flat_map(|record| {
-        let predicted = predicted(record, &of.applied);
-        let relative = |joint: usize| {
-            let measured = &record.measured[joint];
-            let all = measured.iter().map(|x| x * x).sum::<f64>().max(1e-12);
-            let both = measured.iter().zip(&predicted[joint]);
-            both.map(|(a, b)| (a - b).powi(2)).sum::<f64>() / all
-        };
-        (0..predicted.len()).map(relative).collect::<Vec<_>>()
-    });
-    of_joints.sum()
-}
-
-/// What a first search found.
-struct Searched<'r> {
-    search: Search<'r, 'r>,
-    found: Found,
-    /// Nats that chance reaches.
-    chance: f64,
-    /// The model without effects.
-    refit: Improved,
-}
-
-/// The best set of effects and functions.
-fn search<'r>(
-    train: &'r [Record<'r>],
-    settings: &Settings,
-    believed: &Model,
-    tell: &dyn Fn(Phase),
-) -> Searched<'r> {
-    let table = Table::new(train, &settings.effects, settings.trust, Vec::new());
-    let mut search = Search::new(train, table, settings.trust, ERRORS[0]);
-    let may = |id: &str| settings.effects.iter().any(|effect| effect.id == id);
-    if settings.effects.is_empty() {
-        // Nothing is to be found, not even a function of anything.
-        search.banned = search.families.iter().map(|family| family.owner.id()).collect();
-    }
-    // What a log that does not repeat misses is matched, not chosen.
-    search.match_excess(&[]);
-    let errors = errors(&search);
-    search.choose_channel(errors, &may);
-    search.match_excess(&[]);
-    let none = search.evidence.parameters(&[], &DVector::zeros(0));
-    let refit = Improved::new(believed, &search.table.mixing, &none, &[]);
-    tell(Phase::Search);
-    let chance = search.reached_by_chance();
-    let mut found = search.run_late_or_not(errors);
-    if search.lower_error(&mut found, errors) {
-        found = search.run_from(found);
-    }
-    Searched { search, found, chance, refit }
-}
-
-/// Errors that are tried.
-fn errors(search: &Search<'_, '_>) -> &'static [f64] {
-    if search.is_open() { &ERRORS[..1] } else { &ERRORS }
-}
-
-/// Takes torques with the other sign where they are far more probable so: joints.
-fn flip(train: &mut [Record<'_>], settings: &Settings) -> Vec<usize> {
-    let may = settings.effects.iter().any(|effect| effect.id == "current_sign");
-    let dof = train.first().map_or(0, |record| record.motion.model.dof);
-    let mut flipped = Vec::new();
-    if !may {
-        return flipped;
-    }
-    let nuisances = nuisances(train, settings.trust);
-    // A load that weighs more than a small wrist turns its torques round, too.
-    let load = settings.effects.iter().find(|effect| effect.id == "payload");
-    let load = load.map_or_else(Vec::new, |load| pieces(load, train, dof.saturating_sub(1)));
-    let mut table = Table::of(train, load, &nuisances);
-    let error = ERRORS[ERRORS.len() - 1];
-    let weighed = |table: &Table| {
-        let evidence = table.evidence(error);
-        let all: Vec<usize> = (0..table.means.len()).collect();
-        evidence.null + evidence.gain(&all)
-    };
-    let mut null = weighed(&table);
-    let alike = correlations(train, |record| record.motion.torque.clone());
-    for joint in (0..dof).filter(|joint| alike[*joint] < OPPOSITE) {
-        table.flip(joint);
-        let other = weighed(&table);
-        if other > null + FLIP {
-            null = other;
-            flipped.push(joint);
-        } else {
-            table.flip(joint);
-        }
-    }
-    for record in train.iter_mut().filter(|record| record.kind != RecordKind::Before) {
-        for joint in &flipped {
-            record.measured[*joint].iter_mut().for_each(|x| *x = -*x);
-        }
-    }
-    flipped
-}
-
-/// Lets the gears carry what the refitted model says: laws of the load go by what is there.
-fn carry(train: &mut [Record<'_>], settings: &Settings, believed: &Model) {
-    let table = Table::of(train, Vec::new(), &nuisances(train, settings.trust));
-    let evidence = table.evidence(ERRORS[ERRORS.len() - 1]);
-    let none = evidence.parameters(&[], &DVector::zeros(0));
-    let refit = Improved::new(believed, &table.mixing, &none, &[]);
+/// The design of records whose laws go by the torques and loads that the refitted model says: those of
+/// a drawing may be off by a third.
+fn with_loads(train: &mut [Record<'_>], settings: &Settings) -> Design {
+    let design = Design::new(train, settings.trust, &settings.tunables);
+    let Some(model) = train.first().map(|first| first.motion.model.clone()) else { return design };
+    let refit = refitted(&model, (&design, train));
     for record in train.iter_mut() {
         record.motion.carry(&refit.applied);
+        record.motion.torque = record.motion.torques_of(&refit.applied, &Load::none());
     }
+    Design::new(train, settings.trust, &settings.tunables)
 }
 
-/// Correlations of the joints' measured torques with those that a model says.
-fn correlations(records: &[Record<'_>], says: impl Fn(&Record<'_>) -> Vec<Vec<f64>>) -> Vec<f64> {
-    let dof = records.first().map_or(0, |record| record.motion.model.dof);
-    let mut sums = vec![[0.0; 3]; dof];
-    for record in records.iter().filter(|record| record.kind == RecordKind::Mean) {
-        for (sums, (measured, said)) in
-            sums.iter_mut().zip(record.measured.iter().zip(says(record)))
-        {
-            for (x, y) in measured.iter().zip(said) {
-                sums[0] += x * y;
-                sums[1] += x * x;
-                sums[2] += y * y;
-            }
-        }
-    }
-    sums.iter().map(|[product, x, y]| product / (x * y).sqrt().max(1e-12)).collect()
-}
-
-/// Joints of functions of time that were found.
-fn joints_of_time(search: &Search<'_, '_>, found: &Found) -> Vec<usize> {
-    let of_time = |of: &&Chosen| match search.families[of.family].owner {
-        Owner::Generic(id) => OF_TIME.contains(&id),
-        Owner::Effect(_) => false,
+/// Effects that may be named: parameters only of a model that is trusted at all, and those that it
+/// lacks only where a baseline has them, too.
+fn nameable(train: &[Record<'_>], settings: &Settings) -> Vec<&'static Effect> {
+    let has_baseline = train.iter().any(|record| record.kind == RecordKind::Before);
+    let model = train.first().map(|record| record.motion.model);
+    let lacks = |effect: &Effect| {
+        let known = effect.parameters.iter().filter_map(|of| of.there);
+        let says = |there: fn(&Model, usize) -> Option<f64>| model.and_then(|of| there(of, 0));
+        known.clone().count() > 0 && known.filter_map(says).count() == 0
     };
-    let pieces = found.chosen.iter().filter(of_time).flat_map(|of| &of.pieces);
-    let mut joints: Vec<usize> =
-        pieces.filter_map(|piece| search.table.pieces[*piece].joint).collect();
-    joints.sort_unstable();
-    joints.dedup();
-    joints
+    let may = |effect: &&'static Effect| {
+        effect.nature != Nature::Parameter
+            || may_name_parameters(settings.trust) && (has_baseline || !lacks(effect))
+    };
+    settings.effects.iter().copied().filter(may).collect()
 }
 
-#[cfg(test)]
-mod tests {
-    use crate::arm::effects::find;
+fn pieces_of(effects: &[Candidate]) -> Vec<PieceRows> {
+    effects.iter().flat_map(|of| of.pieces.iter().cloned()).collect()
+}
 
-    use super::*;
+/// The model with other parameters that predicts best.
+fn refitted(model: &Model, logs: (&Design, &[Record<'_>])) -> Improved {
+    written(model, logs, Vec::new(), |_| true)
+}
 
-    /// Whether joints are another body's of which `far` of six are missed by half, an effect bringing
-    /// 100 nats.
-    fn is_other(far: usize, bodies: f64) -> bool {
-        let joint = |k| JointGap {
-            torque: 10.0,
-            model: if k < far { 5.0 } else { 1.0 },
-            ..JointGap::default()
+/// Torques that are logged with the other sign.
+fn turned(train: &[Record<'_>], settings: &Settings) -> Option<Turned> {
+    let design = Design::new(train, settings.trust, &settings.tunables);
+    let signs = settings.effects.iter().copied().filter(|of| of.coordinates.is_empty());
+    let search = Search::new(train, &design, &signs.collect::<Vec<_>>());
+    Turned::of(&search, Search::none_of(&design)?)
+}
+
+impl Decision {
+    /// Adds what was found before.
+    fn add(&mut self, finding: Finding) {
+        self.effects.insert(0, finding);
+        self.verdict = match self.verdict {
+            Verdict::Unknown | Verdict::Partial => Verdict::Partial,
+            _ => Verdict::Effect,
         };
-        let graded = Shrink { joints: (0..6).map(joint).collect(), ..Shrink::default() };
-        let said = |id: &str, nats| find(id).map(|effect| Said::alone(effect, vec![0], nats));
-        let effects = said("stribeck", 100.0).into_iter().collect();
-        let candidates = said("link_parameters", bodies).into_iter().collect();
-        is_other_body(&graded, &Judged::of(effects, candidates))
     }
 
-    #[test]
-    fn effects_beside_another_body_are_none() {
-        assert!(is_other(4, 200.0));
-        assert!(!is_other(3, 200.0) && !is_other(4, 50.0));
+    /// Takes back what was asserted.
+    fn withdraw(&mut self, verdict: Verdict) {
+        self.candidates.append(&mut self.effects);
+        self.verdict = verdict;
     }
 }

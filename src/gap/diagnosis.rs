@@ -1,26 +1,14 @@
 //! What a diagnosis says.
 
+use crate::arm::effects::Subject;
 use crate::arm::robot::Model;
 
-use super::calibration::asserted;
-use super::findings::{Anything, Place, Said, Verdict};
-use super::heldout::Shrink;
-use super::improved::Improved;
+use super::data::Record;
+use super::decision::{Entry, Finding, Place, Remainder, Verdict, asserted};
+use super::grade::{Budget, Shrink, shrink};
+use super::model::Improved;
 use super::motion::RunFound;
 use super::power::PowerFound;
-
-/// Effects of what measures torques, not of the torques.
-const OF_MEASUREMENT: [&str; 9] = [
-    "torque_constant",
-    "current_saturation",
-    "flux_weakening",
-    "current_sign",
-    "torque_offset",
-    "time_delay",
-    "filter_lag",
-    "ripple",
-    "encoder_offset",
-];
 
 /// A diagnosis of torques.
 #[derive(Clone)]
@@ -28,56 +16,70 @@ pub struct Diagnosis {
     /// What was found.
     pub verdict: Verdict,
     /// What is asserted.
-    pub effects: Vec<Said>,
+    pub effects: Vec<Finding>,
     /// What was considered.
-    pub candidates: Vec<Said>,
+    pub candidates: Vec<Finding>,
     /// What no law explains.
-    pub anything: Vec<Anything>,
+    pub remainder: Vec<Remainder>,
+    /// The answers of the gates.
+    pub trail: Vec<Entry>,
+    /// Everyday error by joint, of its torque \[1\].
+    pub everyday: Vec<f64>,
+    /// What the gap is made of, by joint, then of all.
+    pub budget: Vec<Budget>,
     /// Where the gap is.
     pub places: Vec<Place>,
     /// How far it shrinks.
     pub shrink: Shrink,
-    /// The model's own error, as a share of its torques.
-    pub error: f64,
-    /// What the best effect reaches where there is none, but in one of 50 measurements \[nats\].
-    pub chance: f64,
     /// The nominal model with its parameters refitted.
     pub refit: Improved,
     /// That with the asserted effects.
     pub improved: Improved,
     /// Why the verdict is what it is.
     pub reasons: Vec<String>,
+    /// Effects that a baseline has already.
+    pub before: Vec<Finding>,
     /// Rms gaps of other channels: name, unit; noise, before, after.
     pub channels: Vec<(&'static str, &'static str, [f64; 3])>,
-    /// Effects that a baseline has already; `None` where it is not compared with.
-    pub before: Option<Vec<Said>>,
 }
 
 impl Diagnosis {
     /// Of a robot whose torques are not logged.
     #[must_use]
     pub fn without_torques(model: &Model) -> Diagnosis {
+        let same = Improved::same(model);
         Diagnosis {
             verdict: Verdict::NoGap,
             effects: Vec::new(),
             candidates: Vec::new(),
-            anything: Vec::new(),
+            remainder: Vec::new(),
+            trail: Vec::new(),
+            everyday: Vec::new(),
+            budget: Vec::new(),
             places: Vec::new(),
             shrink: Shrink::default(),
-            error: 0.0,
-            chance: 0.0,
-            refit: Improved::same(model),
-            improved: Improved::same(model),
+            refit: same.clone(),
+            improved: same,
             reasons: Vec::new(),
             channels: Vec::new(),
-            before: None,
+            before: Vec::new(),
+        }
+    }
+
+    /// Of logs whose numbers cannot be compared.
+    pub(super) fn failed(model: &Model, held: &[Record<'_>]) -> Diagnosis {
+        Diagnosis {
+            verdict: Verdict::Unknown,
+            shrink: shrink(held, [model, model, model]),
+            reasons: vec!["the logs cannot be compared with the model".to_owned()],
+            ..Diagnosis::without_torques(model)
         }
     }
 
     /// What the power says is a part of it.
     pub fn add_power(&mut self, found: &PowerFound) {
         // Torques that are wrong make wrong powers.
-        let is_measured = |said: &Said| OF_MEASUREMENT.contains(&said.effect.id);
+        let is_measured = |said: &Finding| said.effect.subject == Subject::Measurement;
         let trusted = match self.verdict {
             Verdict::NoGap | Verdict::ParametersOnly => true,
             Verdict::Effect => !self.effects.iter().any(is_measured),
@@ -85,11 +87,11 @@ impl Diagnosis {
         };
         let effects = if trusted { found.effects.as_slice() } else { &[] };
         for of in effects {
-            self.effects.push(Said {
+            self.effects.push(Finding {
                 class: of.class.clone(),
                 probability: asserted(of.nats),
                 parameters: of.parameters.clone(),
-                ..Said::alone(of.effect, of.joint.into_iter().collect(), of.nats)
+                ..Finding::alone(of.effect, of.joint.into_iter().collect(), of.nats)
             });
         }
         self.channels.push(("power", "W", found.gap));
@@ -99,11 +101,11 @@ impl Diagnosis {
     /// What runs of the program say is a part of it.
     pub fn add_runs(&mut self, found: &RunFound) {
         for of in &found.effects {
-            self.effects.push(Said {
+            self.effects.push(Finding {
                 class: of.class.clone(),
                 probability: asserted(of.nats),
                 parameters: of.parameters.clone(),
-                ..Said::alone(of.effect, Vec::new(), of.nats)
+                ..Finding::alone(of.effect, Vec::new(), of.nats)
             });
             if of.movement.is_some() {
                 self.places.push(Place {

@@ -1,81 +1,38 @@
 //! Where model and measurement part, and which effect it is.
 //!
-//! [`Record`] is a log ready to be compared, [`Table`] all that may explain the difference,
-//! [`Evidence`] how well some of it does.
+//! `data` (records of logs) → `design` (rows, and all that may explain them) → `posterior` (how
+//! probable a set of effects is) → `decision` (search, gates, verdict) → `model` (what is written) →
+//! `grade` (held-out data).
 
-mod asserted;
-mod attribution;
-mod bins;
-mod body_near;
-mod calibration;
-mod chance;
-mod channel;
-mod chosen;
-mod column;
-mod coupled;
-mod demoted;
+mod data;
+mod decision;
+mod design;
 mod diagnose;
 mod diagnosis;
-mod effect_ids;
-mod evidence;
-mod excess;
-mod findings;
-mod fitted;
-mod forms;
-mod gated;
-mod generic;
-mod heldout;
-mod hypothesis;
-mod impossible;
-mod improved;
-mod interval;
-mod judged;
-mod late;
-mod late_joint;
-mod load;
-mod logs;
+mod grade;
+mod model;
 mod motion;
-mod normal;
-mod nuisance;
 mod phase;
-mod pieces;
-mod places;
-mod polish;
-mod possible;
+mod posterior;
 mod power;
-mod record;
-mod refused;
-mod ripples;
-mod rows;
-mod search;
-mod sizes;
-mod spectrum;
-mod table;
-mod traces;
-mod units;
+mod sign;
+mod trust;
+mod tunables;
 
-pub use attribution::{Attribution, Cell, PARAMETERS, attribution};
-pub use bins::Quantity;
-pub use calibration::{COUNTED, EXAMINED};
-pub use chosen::{Chosen, Found};
-pub use column::{Column, Owner, Piece};
-pub use diagnose::{Settings, diagnose, diagnose_telling};
+pub use data::{Record, RecordKind, common_factor};
+pub use decision::{Entry, Estimated, Finding, Gate, Place, Remainder, Verdict};
+
+#[cfg(feature = "internals")]
+pub use diagnose::diagnose;
+pub use diagnose::{Logs, Settings, diagnose_logs};
 pub use diagnosis::Diagnosis;
-pub use evidence::{Evidence, Given};
-pub use findings::{Anything, Estimated, Place, Said, Verdict};
-pub use fitted::{Fitted, Polished};
-pub use heldout::{JointGap, Shrink, beside_no_jump, predicted, shrink};
-pub use hypothesis::{Family, families};
-pub use improved::Improved;
-pub use interval::Interval;
-pub use late::Late;
-pub use logs::{Logs, diagnose_logs};
+pub use grade::{
+    Attribution, Budget, Cell, Interval, JointGap, PARAMETERS, Profile, Quantity, Shape, Shrink,
+    Torques, Trace, attribution, beside_no_jump, missed, predicted, profile, shapes, shrink, trace,
+};
+pub use model::{Fitted, Improved};
 pub use motion::{Run, RunEffect, RunFound, diagnose_runs};
-pub use nuisance::Trust;
 pub use phase::Phase;
 pub use power::{PowerEffect, PowerFound, Powers, diagnose_power};
-pub use record::{Record, RecordKind};
-pub use search::Search;
-pub use table::{Placed, Table};
-pub use traces::{Profile, Shape, Torques, Trace, missed, profile, shapes, trace};
-pub use units::common_factor;
+pub use trust::Trust;
+pub use tunables::{Tunable, Tunables};

@@ -5,38 +5,29 @@
 pub enum Phase {
     /// What a baseline shows.
     Baseline,
-    /// Signs, delays, the model's own error.
-    Channel,
+    /// The rows that are compared.
+    Design,
     /// Effects are looked for.
     Search,
-    /// Effects that are there at times only.
-    Windows,
-    /// The best shapes of what was found.
-    Shapes,
+    /// What may be asserted.
+    Decision,
     /// The models that come of it, and what they miss.
     Grading,
 }
 
 impl Phase {
     /// All of them.
-    pub const ALL: [Phase; 6] = [
-        Phase::Baseline,
-        Phase::Channel,
-        Phase::Search,
-        Phase::Windows,
-        Phase::Shapes,
-        Phase::Grading,
-    ];
+    pub const ALL: [Phase; 5] =
+        [Phase::Baseline, Phase::Design, Phase::Search, Phase::Decision, Phase::Grading];
 
     /// In words.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Phase::Baseline => "the robot as it was before",
-            Phase::Channel => "signs, delays and the error of the model",
+            Phase::Design => "logs and model",
             Phase::Search => "effects that explain the gap",
-            Phase::Windows => "effects that come and go",
-            Phase::Shapes => "their shapes",
+            Phase::Decision => "what may be asserted",
             Phase::Grading => "what the models miss",
         }
     }

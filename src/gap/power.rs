@@ -11,8 +11,8 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use crate::arm::effects::{Effect, find};
 use crate::arm::robot::Model;
 
-use super::evidence::Evidence;
-use super::findings::Estimated;
+use super::decision::Estimated;
+use super::posterior::Evidence;
 
 /// What an effect has to bring \[nats\].
 const LEAST_NATS: f64 = 25.0;
@@ -289,8 +289,7 @@ impl Weighing<'_> {
         gram *= reference.independent / variance;
         let sds = sizes.iter().map(|size| if *size > 0.0 { PRIOR * power / size } else { 0.0 });
         let sds = DVector::from_iterator(causes.len(), sds);
-        let means = DVector::zeros(causes.len());
-        let evidence = Evidence::new(&gram, of_reference, means, sds, 0.0);
+        let evidence = Evidence::new(&gram, of_reference, sds)?;
         (count > 0).then_some(Weighing { causes, evidence, variance, power, sizes })
     }
 

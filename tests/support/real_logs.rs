@@ -11,7 +11,7 @@ use std::ops::Range;
 
 use joulepath::arm::effects::{ALL, from_toml};
 use joulepath::arm::robot::{Model, import_urdf};
-use joulepath::gap::{Diagnosis, Record, Settings, Trust, diagnose};
+use joulepath::gap::{Diagnosis, Record, Settings, Trust, Tunables, diagnose};
 use joulepath::learn::identify::{
     Free, Hints, Samples, Settings as Identify, Source, Weighting, identify, prepare, torques,
 };
@@ -58,7 +58,7 @@ pub(crate) fn diagnosed(robot: &RealRobot, urdf: &str, csv: &str, trust: Trust) 
     let cut = (TRAINED * count as f64) as usize;
     let [first, last] = split(&bare, &log, [0..cut, cut..count]);
     let nominal = nominal(&bare, &first);
-    let settings = Settings { trust, effects: ALL.iter().collect() };
+    let settings = Settings { trust, effects: ALL.iter().collect(), tunables: Tunables::DEFAULT };
     let held = Record::all(&nominal, &last);
     diagnose(&nominal, Record::all(&nominal, &first), &held, &settings)
 }

@@ -26,6 +26,79 @@ pub enum Scope {
     Robot,
 }
 
+/// What an effect is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// Bodies and forces on them.
+    Body,
+    /// Motors, gears, friction.
+    Drive,
+    /// What measures torques or positions.
+    Measurement,
+}
+
+/// What an effect is to a model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Nature {
+    /// A law that the model lacks.
+    Law,
+    /// Another value of a parameter: an effect where it differs by more than the model is trusted.
+    Parameter,
+    /// Other values of many parameters, at any size.
+    Parameters,
+}
+
+/// When an effect acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Acts {
+    /// All the time.
+    Always,
+    /// After the motor has turned back.
+    AfterReversals,
+    /// In a window of time.
+    InWindow,
+    /// Differently from repetition to repetition.
+    OverTime,
+}
+
+/// The quantity on which a law depends: a law of another form is another function of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Variable {
+    /// Speed of the motor, both senses.
+    Speed,
+    /// Position.
+    Position,
+    /// Position, with the sense of the motion.
+    PositionSense,
+    /// Torque through the gear.
+    Load,
+    /// Its absolute value, with the sense of the motion.
+    LoadSense,
+    /// Torque through the gear times a function of the speed.
+    LoadSpeed,
+    /// Angle since the motor has turned back, with the sense of the motion.
+    Reversal,
+    /// Time within the log, with the sense of the motion.
+    TimeSense,
+}
+
+impl Variable {
+    /// As JSON has it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Variable::Speed => "speed",
+            Variable::Position => "position",
+            Variable::PositionSense => "position_and_sense",
+            Variable::Load => "load",
+            Variable::LoadSense => "load_and_sense",
+            Variable::LoadSpeed => "load_and_speed",
+            Variable::Reversal => "reversal",
+            Variable::TimeSense => "time_and_sense",
+        }
+    }
+}
+
 /// Values in the order of the parameters of an effect, padded with 0.
 pub type Values = [f64; Law::PARAMETERS];
 
@@ -40,9 +113,25 @@ pub struct Parameter {
     pub what: &'static str,
     /// Bounds of possible values.
     pub bounds: [f64; 2],
+    /// What a model has of it at a joint, `None` where it says nothing: no more can be taken away.
+    pub there: Option<fn(&Model, usize) -> Option<f64>>,
+    /// Standard deviation of what any robot has of it; 0 where that is nothing.
+    pub everyday: f64,
 }
 
 impl Parameter {
+    /// A parameter of which a model has some already.
+    #[must_use]
+    pub(super) const fn beside(self, there: fn(&Model, usize) -> Option<f64>) -> Parameter {
+        Parameter { there: Some(there), ..self }
+    }
+
+    /// A parameter of which any robot has some.
+    #[must_use]
+    pub(super) const fn everyday(self, everyday: f64) -> Parameter {
+        Parameter { everyday, ..self }
+    }
+
     /// Whether its values are limited.
     #[must_use]
     pub fn is_bounded(&self) -> bool {
@@ -68,6 +157,13 @@ pub enum Role {
     Shape(fn(&Scale) -> Vec<f64>),
     /// A discrete shape parameter: only tried values are possible.
     Choice(fn(&Scale) -> Vec<f64>),
+    /// How it grows and falls in its window, from 0: at once.
+    Rise {
+        /// The largest value.
+        most: f64,
+        /// The share that acts, from the value and the part of the window that is over.
+        share: fn(f64, f64) -> f64,
+    },
 }
 
 /// Torques per joint \[Nm\] in a motion from the coordinates of a joint (from 0).
@@ -116,6 +212,14 @@ pub struct Effect {
     pub channel: Channel,
     /// Whether it belongs to single joints or the robot.
     pub scope: Scope,
+    /// What it is about.
+    pub subject: Subject,
+    /// What it is to a model.
+    pub nature: Nature,
+    /// When it acts.
+    pub acts: Acts,
+    /// The quantity on which its law depends, where the law may have another form.
+    pub variable: Option<Variable>,
     /// Its name.
     pub title: &'static str,
     /// The law.
@@ -160,6 +264,18 @@ impl Effect {
     #[must_use]
     pub fn coordinates_of(&self, parameters: &[f64]) -> Vec<f64> {
         self.published.map_or_else(|| parameters.to_vec(), |p| (p.coordinates)(parameters))
+    }
+
+    /// Whether robot files keep it as numbers of the sensors.
+    #[must_use]
+    pub fn is_of_sensors(&self) -> bool {
+        self.subject == Subject::Measurement && matches!(self.form, Form::Model(_))
+    }
+
+    /// Whether it is a body that the robot carries.
+    #[must_use]
+    pub fn is_load(&self) -> bool {
+        self.subject == Subject::Body && self.nature == Nature::Parameter
     }
 
     /// Additional logged torque due to the effect, per affected joint \[Nm\]. `joint` is used only
@@ -218,7 +334,14 @@ pub(super) fn shaped(_: &Scale) -> f64 {
 /// An unbounded parameter.
 #[must_use]
 pub(super) const fn free(name: &'static str, unit: &'static str, what: &'static str) -> Parameter {
-    Parameter { name, unit, what, bounds: [f64::NEG_INFINITY, f64::INFINITY] }
+    Parameter {
+        name,
+        unit,
+        what,
+        bounds: [f64::NEG_INFINITY, f64::INFINITY],
+        there: None,
+        everyday: 0.0,
+    }
 }
 
 /// A bounded parameter.
@@ -229,7 +352,7 @@ pub(super) const fn bounded(
     what: &'static str,
     bounds: [f64; 2],
 ) -> Parameter {
-    Parameter { name, unit, what, bounds }
+    Parameter { name, unit, what, bounds, there: None, everyday: 0.0 }
 }
 
 /// A linear coordinate with its prior standard deviation.

@@ -23,7 +23,8 @@ pub use applied::{
     applied, drawn, from_toml, load, load_estimated, of_the_whole_motion, with_estimates,
 };
 pub use effect::{
-    Channel, Coordinate, Effect, Form, OfMotion, Parameter, Published, Role, Scope, Timing, Values,
+    Acts, Channel, Coordinate, Effect, Form, Nature, OfMotion, Parameter, Published, Role, Scope,
+    Subject, Timing, Values, Variable,
 };
 pub use motion::Motion;
 pub use register::{ALL, find};

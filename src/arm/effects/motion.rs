@@ -37,11 +37,17 @@ pub struct Motion<'a> {
     carried: Option<Arc<Model>>,
     /// Logged torques predicted by that model, computed on demand.
     shown: OnceLock<Vec<Vec<f64>>>,
-    /// Rigid-body torques, computed on demand.
-    bodies: OnceLock<Vec<Vec<f64>>>,
     /// Inertias moved by each joint, computed on demand.
     inertia: [OnceLock<Vec<f64>>; MAX_DOF],
+    /// By joint, how its motion changes the torques of all joints, computed on demand.
+    slopes: [OnceLock<Vec<Slopes>>; MAX_DOF],
 }
+
+/// By row, derivatives of a torque with respect to position, speed and acceleration of a joint.
+pub(super) type Slopes = Vec<[f64; 3]>;
+
+/// Step of position over which torques are differentiated \[rad\].
+const TURNED: f64 = 1e-4;
 
 impl<'a> Motion<'a> {
     /// The rows `t` \[s\], `motion` = q, q̇, q̈ per joint. A motor is at rest up to the speed
@@ -70,8 +76,8 @@ impl<'a> Motion<'a> {
             torque: Vec::new(),
             carried: None,
             shown: OnceLock::new(),
-            bodies: OnceLock::new(),
             inertia: Default::default(),
+            slopes: Default::default(),
         };
         let mut data = Data::new();
         for row in 0..rows {
@@ -106,7 +112,7 @@ impl<'a> Motion<'a> {
     pub fn go_by(&mut self, other: &Model) {
         self.carry(other);
         self.carried = Some(Arc::new(Model { links: other.links.clone(), ..self.model.clone() }));
-        (self.shown, self.bodies, self.inertia) = Default::default();
+        (self.shown, self.inertia, self.slopes) = Default::default();
     }
 
     /// Whether laws use the links of another model.
@@ -199,28 +205,16 @@ impl<'a> Motion<'a> {
         torques
     }
 
-    /// Rigid-body torques without rotors \[Nm\].
-    #[must_use]
-    pub fn rigid(&self, model: &Model, load: &Load) -> Vec<Vec<f64>> {
-        let n = model.dof;
-        let mut torques = vec![Vec::with_capacity(self.rows()); n];
-        let mut data = Data::new();
-        for row in 0..self.rows() {
-            let [q, qd, qdd] = self.state(row);
-            let tau = rigid_bodies(model, &mut data, load, &q[..n], &qd[..n], &qdd[..n]);
-            torques.iter_mut().zip(tau).for_each(|(to, tau)| to.push(tau));
-        }
-        torques
-    }
-
-    /// Rigid-body torques that laws use, without rotors \[Nm\].
-    pub(super) fn bodies(&self) -> &[Vec<f64>] {
-        self.bodies.get_or_init(|| self.rigid(self.there(), &Load::none()))
-    }
-
     /// Inertia moved by a joint, in the original motion \[kg m²\].
     pub(super) fn inertias(&self, joint: usize) -> &[f64] {
         self.inertia[joint].get_or_init(|| self.turned(joint))
+    }
+
+    /// Mean inertia moved by a joint \[kg m²\].
+    #[must_use]
+    pub fn mean_inertia(&self, joint: usize) -> f64 {
+        let inertias = self.inertias(joint);
+        inertias.iter().sum::<f64>() / inertias.len().max(1) as f64
     }
 
     fn turned(&self, joint: usize) -> Vec<f64> {
@@ -239,6 +233,35 @@ impl<'a> Motion<'a> {
             torque(&unit[..n]) - weight
         };
         (0..self.rows()).map(inertia).collect()
+    }
+
+    /// By joint, how the motion of one joint changes the rigid-body torques that laws use.
+    pub(super) fn slopes(&self, joint: usize) -> &[Slopes] {
+        self.slopes[joint].get_or_init(|| {
+            let n = self.model.dof;
+            let mut data = Data::new();
+            let mut slopes = vec![Vec::with_capacity(self.rows()); n];
+            for row in 0..self.rows() {
+                let mut state = self.state(row);
+                let mut moved = |order: usize, by: f64| {
+                    let before = state[order][joint];
+                    state[order][joint] += by;
+                    let [q, qd, qdd] = state.each_ref().map(|of| &of[..n]);
+                    let tau = rigid_bodies(self.there(), &mut data, &Load::none(), q, qd, qdd);
+                    state[order][joint] = before;
+                    tau
+                };
+                // Torques are quadratic in speeds and linear in accelerations: any step is exact.
+                let differences = [(0, TURNED), (1, 1.0), (2, 1.0)].map(|(order, step)| {
+                    let [after, before] = [step, -step].map(|by| moved(order, by));
+                    (after, before, 0.5 / step)
+                });
+                for (k, slopes) in slopes.iter_mut().enumerate() {
+                    slopes.push(differences.each_ref().map(|(a, b, share)| (a[k] - b[k]) * share));
+                }
+            }
+            slopes
+        })
     }
 
     /// A motor torque, over its gear ratio, at the joints that it moves.

@@ -16,6 +16,8 @@ pub struct Scale {
     pub viscous: f64,
     /// Reflected rotor inertia \[kg m²\].
     pub rotor: f64,
+    /// Mean inertia that the joint moves \[kg m²\].
+    pub inertia: f64,
     /// RMS and peak torque \[Nm\].
     pub torque: [f64; 2],
     /// Largest speed \[rad/s\].
@@ -47,6 +49,7 @@ impl Motion<'_> {
             coulomb,
             viscous: or(model.friction.viscous[joint], coulomb / rate.max(1e-3)),
             rotor: motors.map_or(0.0, |motors| motors.reflected_inertia(joint)),
+            inertia: self.mean_inertia(joint),
             torque: [rms, largest(tau)],
             rate,
             ratio: motors.map_or(1.0, |motors| motors.ratio[joint]),

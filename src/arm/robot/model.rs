@@ -77,6 +77,17 @@ impl Model {
         self.name.strip_prefix("IRB").map_or(self.name.as_str(), str::trim_start)
     }
 
+    /// Motors whose rotors are known: a URDF has gear ratios at most.
+    #[must_use]
+    pub fn rotors(&self) -> Option<&Motors> {
+        self.motors.as_ref().filter(|motors| motors.has_rotors())
+    }
+
+    /// The same, to be changed.
+    pub fn rotors_mut(&mut self) -> Option<&mut Motors> {
+        self.motors.as_mut().filter(|motors| motors.has_rotors())
+    }
+
     /// Whether torques and energies can be computed.
     #[must_use]
     pub fn has_dynamics(&self) -> bool {

@@ -36,6 +36,12 @@ pub struct Motors {
 }
 
 impl Motors {
+    /// Whether some rotor has an inertia.
+    #[must_use]
+    pub fn has_rotors(&self) -> bool {
+        self.rotor_inertia.iter().any(|inertia| *inertia > 0.0)
+    }
+
     /// Rotor inertia of `joint` (from 0) reflected to the joint \[kg m²\].
     #[must_use]
     pub fn reflected_inertia(&self, joint: usize) -> f64 {

@@ -82,7 +82,7 @@ pub struct Truth {
 
 impl Truth {
     /// A fault of these joints, from 0; its detectability is not yet known.
-    pub(super) fn new(id: &str, form: &str, joints: &[usize]) -> Truth {
+    pub(in crate::examine) fn new(id: &str, form: &str, joints: &[usize]) -> Truth {
         Truth {
             id: id.into(),
             form: form.into(),
@@ -92,6 +92,18 @@ impl Truth {
             equivalents: Vec::new(),
             nats: 0.0,
         }
+    }
+
+    /// Adds a parameter of a joint, from 0, or of the arm.
+    pub(in crate::examine) fn tell(
+        &mut self,
+        name: &str,
+        joint: Option<usize>,
+        value: f64,
+        graded: bool,
+    ) {
+        let joint = joint.map(|joint| joint + 1);
+        self.parameters.push(TrueParameter { name: name.into(), joint, value, graded });
     }
 }
 

@@ -25,7 +25,7 @@ mod pick_place;
 mod plant;
 mod profile;
 mod program;
-mod random;
+pub(in crate::examine) mod random;
 mod robots;
 mod scale;
 mod seal;

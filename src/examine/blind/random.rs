@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 
 /// A stream of random numbers.
 #[derive(Clone, Debug)]
-pub(super) struct Random {
+pub(in crate::examine) struct Random {
     state: u64,
 }
 
@@ -15,7 +15,7 @@ const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
 
 impl Random {
     /// The stream of a purpose in a case; streams of different purposes are independent.
-    pub(super) fn new(seed: u64, case: u64, purpose: &str) -> Random {
+    pub(in crate::examine) fn new(seed: u64, case: u64, purpose: &str) -> Random {
         let mut state = seed;
         for word in [case, purpose.len() as u64].into_iter().chain(purpose.bytes().map(u64::from)) {
             state = mixed(state.wrapping_add(GOLDEN) ^ word.wrapping_mul(GOLDEN | 1));
@@ -23,42 +23,49 @@ impl Random {
         Random { state }
     }
 
-    pub(super) fn bits(&mut self) -> u64 {
+    pub(in crate::examine) fn bits(&mut self) -> u64 {
         self.state = self.state.wrapping_add(GOLDEN);
         mixed(self.state)
     }
 
     /// Uniform in \[0, 1).
-    pub(super) fn unit(&mut self) -> f64 {
+    pub(in crate::examine) fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
     /// Uniform between two numbers.
-    pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub(in crate::examine) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
 
     /// Log-uniform between two positive numbers.
-    pub(super) fn log_between(&mut self, low: f64, high: f64) -> f64 {
+    pub(in crate::examine) fn log_between(&mut self, low: f64, high: f64) -> f64 {
         self.between(low.ln(), high.ln()).exp()
     }
 
     /// +1 or −1.
-    pub(super) fn sign(&mut self) -> f64 {
+    pub(in crate::examine) fn sign(&mut self) -> f64 {
         if self.chance(0.5) { 1.0 } else { -1.0 }
     }
 
-    pub(super) fn chance(&mut self, probability: f64) -> bool {
+    pub(in crate::examine) fn chance(&mut self, probability: f64) -> bool {
         self.unit() < probability
     }
 
     /// Uniform in 0 … count − 1; 0 for `count` = 0.
-    pub(super) fn below(&mut self, count: usize) -> usize {
+    pub(in crate::examine) fn below(&mut self, count: usize) -> usize {
         if count == 0 { 0 } else { (self.unit() * count as f64) as usize }
     }
 
+    /// Puts a list into random order (R. Fisher, F. Yates 1938).
+    pub(in crate::examine) fn shuffle<T>(&mut self, list: &mut [T]) {
+        for last in (1..list.len()).rev() {
+            list.swap(last, self.below(last + 1));
+        }
+    }
+
     /// Index and name of one of the forms of a law.
-    pub(super) fn form<const N: usize>(
+    pub(in crate::examine) fn form<const N: usize>(
         &mut self,
         forms: [&'static str; N],
     ) -> (usize, &'static str) {
@@ -67,13 +74,13 @@ impl Random {
     }
 
     /// Standard normal (G. E. P. Box, M. E. Muller 1958).
-    pub(super) fn normal(&mut self) -> f64 {
+    pub(in crate::examine) fn normal(&mut self) -> f64 {
         let radius = (-2.0 * (1.0 - self.unit()).ln()).sqrt();
         radius * (TAU * self.unit()).cos()
     }
 
     /// Standard normal, truncated to ± `limit` by rejection.
-    pub(super) fn normal_within(&mut self, limit: f64) -> f64 {
+    pub(in crate::examine) fn normal_within(&mut self, limit: f64) -> f64 {
         for _ in 0..64 {
             let x = self.normal();
             if x.abs() <= limit {

@@ -1,7 +1,7 @@
 //! What runs of a program show.
 
 use crate::arm::effects::{ALL, Effect, Form, Timing};
-use crate::gap::findings::Estimated;
+use crate::gap::decision::Estimated;
 
 use super::changes::movements;
 use super::graded::graded;

@@ -14,6 +14,10 @@ const DIFFERENT: f64 = 0.06;
 const PART: f64 = 0.35;
 /// Share of the fastest step below which a sample counts as at rest.
 const RESTING: f64 = 0.01;
+/// Largest difference of positions and of their changes from one repetition to the next, of their
+/// ranges; part of the period to both sides over which changes are taken.
+const ALIKE: f64 = 0.03;
+const BESIDE: usize = 50;
 /// Shortest period, in samples.
 const SHORTEST: usize = 20;
 
@@ -133,21 +137,33 @@ impl Misses<'_> {
     }
 }
 
+/// Changes of a series over twice `near` samples.
+fn changes(x: &[f64], near: usize) -> Vec<f64> {
+    x.iter().zip(x.iter().skip(2 * near)).map(|(a, b)| b - a).collect()
+}
+
 /// First sample and length of the longest run of samples that repeat after a period.
 fn longest_run(q: &[&[f64]], lag: f64) -> Option<(usize, usize)> {
     let n = q[0].len();
     let whole = lag.round() as usize;
     let ranges: Vec<f64> = q.iter().map(|x| range(x)).collect();
+    let last = n.checked_sub(whole)?.checked_sub(1)?;
+    let near = (whole / BESIDE).max(1);
+    let changes: Vec<f64> = q.iter().map(|x| range(&changes(x, near))).collect();
     let back = |i: usize| {
-        q.iter().zip(&ranges).all(|(x, range)| {
+        let [from, to] = [i.saturating_sub(near), (i + near).min(last)];
+        q.iter().zip(&ranges).zip(&changes).all(|((x, range), fastest)| {
             // A lag between two samples has an error of up to one step.
             let step = (x[(i + 1).min(n - 1)] - x[i]).abs();
-            (x[i] - x[i + whole]).abs() <= 0.03 * range.max(1e-6) + step
+            let miss = |k: usize| x[k] - x[k + whole];
+            // Where it starts and stops, a motion may be at the same place with another speed.
+            miss(i).abs() <= ALIKE * range.max(1e-6) + step
+                && (miss(to) - miss(from)).abs() <= ALIKE * fastest.max(1e-6) + 2.0 * step
         })
     };
     let mut best = (0, 0);
     let mut begin = 0;
-    for i in 0..=n.checked_sub(whole)? {
+    for i in 0..=n - whole {
         if i == n - whole || !back(i) {
             if i - begin > best.1 {
                 best = (begin, i - begin);

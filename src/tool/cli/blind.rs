@@ -1,6 +1,9 @@
 //! `joulepath blind`: the sealed examination of `diagnose`.
 
+mod cases;
 mod family;
+mod inject;
+mod sensitivity;
 
 use std::fmt::Write as _;
 use std::fs;
@@ -8,14 +11,15 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, bail};
-use clap::{Args, Subcommand};
-use rayon::prelude::*;
+use clap::{Args, Subcommand, ValueEnum};
 use serde_json::{Value, json};
 
+use self::cases::{labels, options, read, write_cases};
 use self::family::family;
 use super::common::{self, Format};
 use super::{diagnose, output};
-use crate::examine::blind::{self, Asked, FAMILY, Grades, KEY, Label, SEALS, Sealed, Settings};
+use crate::examine::blind::{self, Asked, FAMILY, Grades, KEY, Label, SEALS, Settings};
+use crate::examine::worlds::{self, World};
 use crate::tool::report::html::grades_report;
 
 /// The sealed examination of diagnose: generate cases, grade their diagnoses.
@@ -32,7 +36,9 @@ pub(super) struct BlindArgs {
 #[derive(Debug, Subcommand)]
 enum BlindCommand {
     Generate(GenerateArgs),
+    Inject(inject::InjectArgs),
     Grade(GradeArgs),
+    Sensitivity(sensitivity::SensitivityArgs),
 }
 
 /// Write cases: nominal models with logs, the truth sealed beside them.
@@ -51,6 +57,10 @@ struct GenerateArgs {
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=9999))]
     count: u32,
 
+    /// Another simulator, with robots, motions and logs of its own.
+    #[arg(long, value_enum, ignore_case = true, conflicts_with_all = ["cycles", "period"])]
+    world: Option<WorldArg>,
+
     /// Periods in each log.
     #[arg(long, value_name = "N", default_value_t = 7, value_parser = clap::value_parser!(u32).range(2..=100))]
     cycles: u32,
@@ -62,6 +72,20 @@ struct GenerateArgs {
     /// No notes and no progress on standard error.
     #[arg(long, short)]
     quiet: bool,
+}
+
+/// A simulator that shares no formula with the others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum WorldArg {
+    /// States of friction and gears along a prescribed motion of the links.
+    #[value(name = "A")]
+    A,
+    /// Closed loop of forward dynamics and controller.
+    #[value(name = "B")]
+    B,
+    /// Motors in electrical quantities; coupled wrists.
+    #[value(name = "C")]
+    C,
 }
 
 /// Open the seals and grade the diagnoses of the cases.
@@ -96,20 +120,26 @@ const PERIODS_S: [f64; 2] = [2.0, 60.0];
 pub(super) fn run(args: &BlindArgs) -> anyhow::Result<ExitCode> {
     match &args.command {
         BlindCommand::Generate(args) => generate(args),
+        BlindCommand::Inject(args) => inject::run(args),
         BlindCommand::Grade(args) => grade(args),
+        BlindCommand::Sensitivity(args) => sensitivity::run(args),
     }
 }
 
 fn generate(args: &GenerateArgs) -> anyhow::Result<ExitCode> {
     let out = &args.out;
+    if let Some(world) = args.world {
+        let world = match world {
+            WorldArg::A => World::A,
+            WorldArg::B => World::B,
+            WorldArg::C => World::C,
+        };
+        return write_cases(out, args.count, args.quiet, |number| {
+            Ok(worlds::case(world, args.seed, number))
+        });
+    }
     if !(PERIODS_S[0]..=PERIODS_S[1]).contains(&args.period) {
         bail!("--period {}: give {} to {} s", args.period, PERIODS_S[0], PERIODS_S[1]);
-    }
-    if out.join(KEY).exists() || out.join(SEALS).exists() {
-        bail!(
-            "'{}' has cases with seals already; name a new folder with --out, or remove that one",
-            out.display()
-        );
     }
     let settings = Settings {
         cycles: args.cycles as usize,
@@ -117,31 +147,14 @@ fn generate(args: &GenerateArgs) -> anyhow::Result<ExitCode> {
         period_s: (args.period * 10.0).round() / 10.0,
         ..Settings::new(args.seed)
     };
-    let progress = common::progress(args.quiet, Some(u64::from(args.count)));
-    let labels: anyhow::Result<Vec<_>> = (1..=args.count as usize)
-        .into_par_iter()
-        .map(|number| {
-            let case = blind::case(&settings, number)
-                .context("the catalogue has none of the robots of the examination")?;
-            let files = case.files.iter().map(|(name, text)| (name, text));
-            output::write_folder(&out.join(&case.name), files)?;
-            progress.inc(1);
-            Ok((case.label, case.salt))
-        })
-        .collect();
-    let sealed = blind::seal(&labels?)?;
-    output::write(&out.join(KEY), sealed.key.as_bytes())?;
-    output::write(&out.join(SEALS), sealed.seals.as_bytes())?;
-    progress.finish_and_clear();
-    let text = format!("{} cases in '{}', the truth sealed in {KEY}", args.count, out.display());
-    common::note(args.quiet, &text);
-    Ok(ExitCode::SUCCESS)
+    write_cases(out, args.count, args.quiet, |number| {
+        blind::case(&settings, number)
+            .context("the catalogue has none of the robots of the examination")
+    })
 }
 
 fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {
-    let sealed =
-        Sealed { seals: read(&args.cases.join(SEALS))?, key: read(&args.cases.join(KEY))? };
-    let labels = blind::open(&sealed)?;
+    let labels = labels(&args.cases)?;
     let folders = labels.iter().filter_map(|label| fs::read_dir(args.cases.join(&label.case)).ok());
     let files = folders.flatten().flatten().map(|entry| entry.path());
     let read_files: Vec<PathBuf> =
@@ -160,10 +173,6 @@ fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {
     }
     let (mut graded, mut diagnoses) = (Vec::new(), Vec::new());
     for label in &labels {
-        // A case name must not lead out of the folder.
-        if label.case.contains(['/', '\\']) || label.case.starts_with('.') {
-            bail!("{KEY}: '{}' is not a case name; use the file that was generated", label.case);
-        }
         let without = without(label, args.leave_out.as_deref());
         if args.leave_out.is_some() && without.is_empty() {
             continue;
@@ -204,21 +213,12 @@ fn without<'a>(label: &'a Label, left_out: Option<&'a str>) -> Vec<&'a str> {
 
 /// The JSON of `diagnose` for a case without some effects; stored as `name` in the case folder.
 fn diagnosis_of_case(case: &Path, name: &str, without: &[&str]) -> anyhow::Result<Value> {
-    let options: Value = serde_json::from_str(&read(&case.join("case.json"))?)
-        .with_context(|| format!("'{}' has no case.json", case.display()))?;
-    let value = diagnose::diagnose_case(case, &options, without)
+    let value = diagnose::diagnose_case(case, &options(case)?, without)
         .with_context(|| case.display().to_string())?;
     // A cache for the next grading.
     let text = format!("{value:#}\n");
     output::write(&case.join(name), text.as_bytes())?;
     Ok(value)
-}
-
-fn read(path: &Path) -> anyhow::Result<String> {
-    let shown = path.display();
-    fs::read_to_string(path).with_context(|| {
-        format!("cannot read '{shown}'; name the folder that joulepath blind generate wrote")
-    })
 }
 
 fn table(grades: &Grades) -> String {

@@ -15,13 +15,15 @@ use serde_json::Value;
 
 use super::common::{self, Format};
 use super::input::{self, Input};
-use super::logs::{PreparedLog, RawLog, Reader, held_out, hold_out, read_all, refuse_same};
+use super::logs::{
+    PreparedLog, RawLog, Reader, filter_alike, held_out, hold_out, read_all, refuse_same,
+};
 use super::output::{self, is_same_file};
 use crate::arm::effects::{self, ALL, Effect};
 use crate::arm::robot::{Model, Use, nearest, ready, to_toml};
 use crate::gap::{
-    Diagnosis, Logs, Phase, Record, Settings, Trust, Verdict, common_factor, diagnose_logs,
-    diagnose_power, diagnose_runs,
+    Diagnosis, Logs, Phase, Record, Settings, Trust, Tunables, Verdict, common_factor,
+    diagnose_logs, diagnose_power, diagnose_runs,
 };
 use crate::learn::identify::{Hints, Samples};
 use crate::learn::log::{Channel, ColumnMap};
@@ -82,6 +84,10 @@ pub(super) struct DiagnoseArgs {
     #[arg(long, value_name = "FILE.html")]
     report: Option<PathBuf>,
 
+    /// Print the answers of all gates that lead to the verdict.
+    #[arg(long)]
+    explain: bool,
+
     /// How the result is written.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -93,6 +99,8 @@ pub(super) struct DiagnoseArgs {
 
 /// Cut-off frequency of the filter for logged program runs \[Hz\].
 const RUN_CUTOFF_HZ: f64 = 10.0;
+/// Largest number of logs in a part of a case of `blind`.
+const MAX_LOGS: usize = 999;
 /// Redraw interval of the progress bar.
 const TICK: Duration = Duration::from_millis(200);
 
@@ -108,37 +116,70 @@ enum TrustArg {
 }
 
 pub(super) fn run(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
-    let (found, basis) = run_diagnosis(args)?;
-    common::print(args.format, || report::json(&found, &basis), || report::text(&found, &basis))?;
+    let (found, basis) = run_diagnosis(args, &Tunables::DEFAULT)?;
+    let text = || {
+        let trail = if args.explain { report::trail(&found) } else { String::new() };
+        report::text(&found, &basis) + &trail
+    };
+    common::print(args.format, || report::json(&found, &basis), text)?;
     Ok(if found.verdict == Verdict::NoGap { ExitCode::SUCCESS } else { ExitCode::from(1) })
 }
 
-/// The JSON of a case of `blind generate`, diagnosed without some effects; without omissions, the
+/// The JSON of a case of `blind`, diagnosed without some effects; without omissions, the
 /// model is written too.
 pub(super) fn diagnose_case(
     case: &Path,
     options: &Value,
     without: &[&str],
 ) -> anyhow::Result<Value> {
-    let text = |key: &str| options.get(key).and_then(Value::as_str);
-    let baseline = case.join("baseline-1.csv");
     let args = DiagnoseArgs {
-        robot: case.join("nominal.toml").display().to_string(),
-        log: vec![case.join("log-1.csv"), case.join("log-2.csv")],
-        heldout: vec![case.join("heldout.csv")],
-        baseline: if baseline.exists() { vec![baseline] } else { Vec::new() },
+        effects: (!without.is_empty()).then(|| format!("-{}", without.join(","))),
+        out: without.is_empty().then(|| case.join("improved.toml")),
+        ..of_case(case, options)
+    };
+    let (found, basis) = run_diagnosis(&args, &Tunables::DEFAULT)?;
+    Ok(report::json(&found, &basis))
+}
+
+/// The JSON of a case of `blind`, diagnosed with other numbers.
+pub(super) fn case_with(
+    case: &Path,
+    options: &Value,
+    tunables: &Tunables,
+) -> anyhow::Result<Value> {
+    let (found, basis) = run_diagnosis(&of_case(case, options), tunables)?;
+    Ok(report::json(&found, &basis))
+}
+
+/// What a case of `blind` is diagnosed with.
+fn of_case(case: &Path, options: &Value) -> DiagnoseArgs {
+    let text = |key: &str| options.get(key).and_then(Value::as_str);
+    DiagnoseArgs {
+        robot: case.join(text("robot").unwrap_or("nominal.toml")).display().to_string(),
+        log: numbered(case, "log"),
+        heldout: numbered(case, "heldout"),
+        baseline: numbered(case, "baseline"),
         program: text("program").map(|folder| case.join(folder)),
         trust: text("trust").and_then(|trust| TrustArg::from_str(trust, true).ok()),
-        effects: (!without.is_empty()).then(|| format!("-{}", without.join(","))),
+        effects: None,
         map: String::new(),
         period: options.get("period").and_then(Value::as_f64),
-        out: without.is_empty().then(|| case.join("improved.toml")),
+        out: None,
         report: None,
+        explain: false,
         format: Format::Json,
         quiet: true,
-    };
-    let (found, basis) = run_diagnosis(&args)?;
-    Ok(report::json(&found, &basis))
+    }
+}
+
+/// The logs of a part of a case: `log.csv` or `log-1.csv`, `log-2.csv`, …
+fn numbered(case: &Path, part: &str) -> Vec<PathBuf> {
+    let whole = case.join(format!("{part}.csv"));
+    if whole.exists() {
+        return vec![whole];
+    }
+    let file = |number: usize| case.join(format!("{part}-{number}.csv"));
+    (1..=MAX_LOGS).map(file).take_while(|file| file.exists()).collect()
 }
 
 /// Refuses outputs that overwrite an input, and logs that are given twice or in two roles.
@@ -170,10 +211,12 @@ fn check_paths(args: &DiagnoseArgs) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn run_diagnosis(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basis)> {
+fn run_diagnosis(
+    args: &DiagnoseArgs,
+    tunables: &Tunables,
+) -> anyhow::Result<(Diagnosis, report::Basis)> {
     check_paths(args)?;
     let model = effects::load(&args.robot)?;
-    ready(&model, Use::Diagnose)?;
     common::notes(args.quiet, model.assumed());
     let map = ColumnMap::parse(&args.map)?;
     if let Some(period) = args.period.filter(|p| !(p.is_finite() && *p > 0.0)) {
@@ -190,6 +233,7 @@ fn run_diagnosis(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basi
     if motion::is_alone(&raw) {
         return diagnose_motion(args, &model, &map, raw, &wanted);
     }
+    ready(&model, Use::Diagnose)?;
     let Data { train, held, baseline, heldout, notes } = read_data(args, &model, &map, raw, trust)?;
     // These notes were already shown during reading.
     let shown = notes.len();
@@ -218,10 +262,11 @@ fn run_diagnosis(args: &DiagnoseArgs) -> anyhow::Result<(Diagnosis, report::Basi
     } else {
         (wanted.clone(), baseline.as_slice())
     };
-    let settings = Settings { trust, effects: of_torque };
+    let settings = Settings { trust, effects: of_torque, tunables: tunables.clone() };
     let mut found =
         diagnose_with_progress(&model, [&train, &held, compared], &settings, &progress(args.quiet));
-    basis.notes.extend(baseline_notes(&found, compared));
+    let known = found.before.iter();
+    basis.notes.extend(known.map(|of| format!("{}: in the baseline already", report::called(of))));
     if let Some(of) = &of_power {
         found.add_power(of);
     }
@@ -330,26 +375,13 @@ fn read_data(
              at the joints, currents as i1… in A, or the --robot that was logged"
         );
     }
-    let baseline = prepared(read_all(&args.baseline, map, model)?)?;
+    let mut baseline = prepared(read_all(&args.baseline, map, model)?)?;
+    filter_alike(model, [&mut train, &mut held, &mut baseline])?;
     Ok(Data { train, held, baseline, heldout, notes: reader.notes })
 }
 
 fn records<'a>(model: &'a Model, logs: &[PreparedLog]) -> Vec<Record<'a>> {
     logs.iter().flat_map(|log| Record::all(model, &log.samples)).collect()
-}
-
-/// Effects that the baseline already shows, or why it is not compared.
-fn baseline_notes(found: &Diagnosis, compared: &[PreparedLog]) -> Vec<String> {
-    let known = found.before.iter().flatten();
-    let mut notes: Vec<String> =
-        known.map(|of| format!("{}: in the baseline already", report::called(of))).collect();
-    if !compared.is_empty() && found.before.is_none() {
-        notes.push(
-            "the baseline is not compared with the torques: log it as often repeated as the others"
-                .into(),
-        );
-    }
-    notes
 }
 
 fn write(

@@ -208,6 +208,23 @@ pub(super) fn held_out(model: &Model, of: &PreparedLog) -> anyhow::Result<[Prepa
     Ok([part(&first).with_context(|| shown.clone())?, part(&last).with_context(|| shown.clone())?])
 }
 
+/// Gives logs that are filtered the lowest cut-off frequency of all, so that they can be compared.
+pub(super) fn filter_alike(model: &Model, logs: [&mut [PreparedLog]; 3]) -> anyhow::Result<()> {
+    let cutoff = |of: &PreparedLog| match of.samples.source {
+        Source::Filtered { cutoff } => Some(cutoff),
+        Source::Periodic { .. } | Source::Logged => None,
+    };
+    let all = logs.iter().flat_map(|logs| logs.iter());
+    let Some(least) = all.filter_map(cutoff).reduce(f64::min) else { return Ok(()) };
+    for of in logs.into_iter().flatten().filter(|of| cutoff(of).is_some_and(|own| own > least)) {
+        let shown = of.record.path.clone();
+        let torque = torques(model, &of.log).with_context(|| shown.clone())?;
+        let hints = Hints { period: None, cutoff: Some(least) };
+        of.samples = prepare(&of.log, &torque.tau, hints).with_context(|| shown)?;
+    }
+    Ok(())
+}
+
 /// Reads logs and merges the halves of one run.
 pub(super) fn read_all(
     paths: &[PathBuf],

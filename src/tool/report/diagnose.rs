@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use crate::gap::{Diagnosis, Interval, Place, Said, Verdict};
+use crate::gap::{Budget, Diagnosis, Finding, Interval, Place, Verdict};
 
 /// The basis of a result: robot, logs, notes.
 #[derive(Clone, Debug, Default)]
@@ -25,11 +25,11 @@ pub struct Basis {
 /// The JSON of the stable interface.
 #[must_use]
 pub fn json(found: &Diagnosis, basis: &Basis) -> Value {
-    let all = |of: &[Said]| -> Vec<Value> { of.iter().map(effect).collect() };
-    let generic = found.anything.iter().map(|of| {
+    let all = |of: &[Finding]| -> Vec<Value> { of.iter().map(|of| effect(of, found)).collect() };
+    let generic = found.remainder.iter().map(|of| {
         json!({
             "id": of.id,
-            "joint": of.joint.map(|joint| joint + 1),
+            "joint": of.joint + 1,
             "share_percent": 100.0 * of.share,
         })
     });
@@ -41,8 +41,9 @@ pub fn json(found: &Diagnosis, basis: &Basis) -> Value {
         "where": found.places.iter().map(place).collect::<Vec<_>>(),
         "gap": gap(found, basis),
         "next_experiment": next(found, basis),
-        "model_error_percent": 100.0 * found.error,
-        "null_nats": found.chance,
+        "budget": found.budget.iter().map(budget).collect::<Vec<_>>(),
+        "everyday_error_percent": found.everyday.iter().map(|x| 100.0 * x).collect::<Vec<_>>(),
+        "trail": found.trail,
         "reasons": found.reasons,
         "notes": basis.notes,
         "model": basis.model,
@@ -116,7 +117,27 @@ fn interval(of: &Interval) -> Value {
     json!({"value": 100.0 * of.value, "low": 100.0 * of.low, "high": 100.0 * of.high})
 }
 
-fn effect(of: &Said) -> Value {
+/// What the gap is made of.
+fn budget(of: &Budget) -> Value {
+    let effects = of.effects.iter().map(|(id, rms)| ((*id).to_owned(), json!(rms)));
+    json!({
+        "joint": of.joint.map(|joint| joint + 1),
+        "model": of.model,
+        "parameters": of.parameters,
+        "effects": effects.collect::<Map<_, _>>(),
+        "unexplained": of.unexplained,
+        "noise": of.noise,
+    })
+}
+
+/// Share of the squared gap of all joints that an effect takes off.
+fn share(of: &Finding, found: &Diagnosis) -> f64 {
+    let Some(all) = found.budget.iter().find(|of| of.joint.is_none()) else { return 0.0 };
+    let own = all.effects.iter().find(|(id, _)| *id == of.effect.id);
+    own.map_or(0.0, |(_, rms)| (rms / all.model.max(f64::MIN_POSITIVE)).powi(2))
+}
+
+fn effect(of: &Finding, found: &Diagnosis) -> Value {
     let parameters = of
         .parameters
         .iter()
@@ -127,7 +148,7 @@ fn effect(of: &Said) -> Value {
         "class": of.class,
         "probability": of.probability,
         "parameters": parameters.collect::<Map<_, _>>(),
-        "share_percent": 100.0 * of.share,
+        "share_percent": 100.0 * share(of, found),
         "nats": of.nats,
         "size_percent": 100.0 * of.size,
     })
@@ -179,7 +200,7 @@ pub(super) fn sentence(verdict: Verdict) -> &'static str {
 
 /// The name of an effect and its joints.
 #[must_use]
-pub fn called(of: &Said) -> String {
+pub fn called(of: &Finding) -> String {
     let joints: Vec<String> = of.joints.iter().map(|joint| (joint + 1).to_string()).collect();
     let place = match joints.len() {
         0 => "the robot".to_owned(),
@@ -189,23 +210,48 @@ pub fn called(of: &Said) -> String {
 }
 
 /// The same with its probability.
-fn with_probability(of: &Said) -> String {
+fn with_probability(of: &Finding) -> String {
     format!("{}, probability {:.2}, {:.0} nats", called(of), of.probability, of.nats)
 }
 
 /// What the gap depends on beside the effects.
 pub(super) fn unknown(found: &Diagnosis) -> impl Iterator<Item = String> {
-    found.anything.iter().map(|of| {
-        let joint = of.joint.map_or_else(String::new, |joint| format!(" of joint {}", joint + 1));
-        format!("a function of the {}{joint}", of.id.replace('_', " "))
+    found.remainder.iter().map(|of| {
+        let what = match of.id {
+            "other" => "no smooth function".to_owned(),
+            id => format!(
+                "a function of the {}",
+                id.replace("_and_sense", " and the sense of motion").replace('_', " ")
+            ),
+        };
+        format!("{:.1} % of the torque of joint {}, {what}", 100.0 * of.share, of.joint + 1)
     })
 }
 
-/// The result as text.
+/// The result as text: what the gap is made of, where it is, how far it shrinks, what to do next.
 #[must_use]
 pub fn text(found: &Diagnosis, basis: &Basis) -> String {
     let mut out = String::new();
     let _ = writeln!(out, "{}", sentence(found.verdict));
+    budget_text(&mut out, found, basis);
+    if let Some(text) = everyday(found) {
+        let _ = writeln!(out, "{text}");
+    }
+    if let Some(text) = place_text(found) {
+        let _ = writeln!(out, "where: {text}");
+    }
+    for of in &found.places {
+        if let Some((file, line)) = &of.line {
+            let _ = writeln!(out, "  {file}:{line}, {:.0} % of it", 100.0 * of.share);
+        }
+    }
+    let _ = writeln!(out, "{}", shrink_text(found, basis));
+    for (name, unit, [noise, before, after]) in &found.channels {
+        let _ = writeln!(
+            out,
+            "{name}: rms {before:.4} {unit} before, {after:.4} after, noise {noise:.4}"
+        );
+    }
     for of in &found.effects {
         let _ = writeln!(out, "\nfound: {}", with_probability(of));
         if of.class.len() > 1 {
@@ -214,11 +260,6 @@ pub fn text(found: &Diagnosis, basis: &Basis) -> String {
         for parameter in &of.parameters {
             let (name, value, sd) = (&parameter.name, parameter.value, parameter.sd);
             let _ = writeln!(out, "  {name:<20} {value:>12.5} ± {sd:.5} {}", parameter.unit);
-        }
-    }
-    for of in &found.places {
-        if let Some((file, line)) = &of.line {
-            let _ = writeln!(out, "  {file}:{line}, {:.0} % of it", 100.0 * of.share);
         }
     }
     if !found.candidates.is_empty() {
@@ -233,7 +274,6 @@ pub fn text(found: &Diagnosis, basis: &Basis) -> String {
     for reason in &found.reasons {
         let _ = writeln!(out, "not asserted: {reason}");
     }
-    shrinks(&mut out, found, basis);
     if let Some(Experiment { why, command }) = next(found, basis) {
         let _ = writeln!(out, "next: {why}\n  {command}");
     }
@@ -243,40 +283,97 @@ pub fn text(found: &Diagnosis, basis: &Basis) -> String {
     out
 }
 
-/// How far the gap shrinks on the held-out logs, as text.
-fn shrinks(out: &mut String, found: &Diagnosis, basis: &Basis) {
-    if !found.shrink.joints.is_empty() {
+/// The answers of the gates, one a line: the explanation of the verdict.
+#[must_use]
+pub fn trail(found: &Diagnosis) -> String {
+    let mut out = String::from("gates:\n");
+    for of in &found.trail {
+        let sign = match (of.gate.is_upper(), of.passed) {
+            (true, true) => "<=",
+            (true, false) => "> ",
+            (false, true) => ">=",
+            (false, false) => "< ",
+        };
+        let answer = if of.passed { "passed" } else { "failed" };
+        let (name, gate) = (&of.hypothesis, of.gate.what());
         let _ = writeln!(
             out,
-            "\nheld-out {}, rms Nm\njoint     noise     model     refit   +effect",
-            basis.heldout
-        );
-        for (joint, of) in found.shrink.joints.iter().enumerate() {
-            let _ = writeln!(
-                out,
-                "{:>5} {:>9.4} {:>9.4} {:>9.4} {:>9.4}",
-                joint + 1,
-                of.noise,
-                of.model,
-                of.refit,
-                of.refit_plus_effect
-            );
-        }
-        for (name, of) in [("all", &found.shrink.total), ("by effect", &found.shrink.by_effect)] {
-            let [value, low, high] = [of.value, of.low, of.high].map(|x| 100.0 * x);
-            let _ = if value < 0.0 {
-                let [value, low, high] = [-value, -high, -low];
-                writeln!(out, "the gap grows, {name}: {value:.1} % ({low:.1} to {high:.1})")
-            } else {
-                writeln!(out, "the gap shrinks, {name}: {value:.1} % ({low:.1} to {high:.1})")
-            };
-        }
-    }
-    for (name, unit, [noise, before, after]) in &found.channels {
-        let _ = writeln!(
-            out,
-            "\nheld-out {}, {name}, rms {unit}: noise {noise:.4}, before {before:.4}, after {after:.4}",
-            basis.heldout
+            "  {answer}  {name:<36} {:>10.4} {sign} {:<8} {gate}",
+            of.value, of.limit
         );
     }
+    out
+}
+
+/// Roots of mean squares in the held-out data; their squares add up.
+fn budget_text(out: &mut String, found: &Diagnosis, basis: &Basis) {
+    let Some(first) = found.budget.first() else { return };
+    let effects = first.effects.iter().map(|(id, _)| *id);
+    let columns: Vec<&str> = ["model", "parameters"]
+        .into_iter()
+        .chain(effects)
+        .chain(["unexplained", "noise"])
+        .collect();
+    let width = columns.iter().map(|name| name.len()).max().unwrap_or(0).max(10);
+    let _ = write!(out, "\nrms gap in the held-out {}, squares add up\njoint", basis.heldout);
+    for name in &columns {
+        let _ = write!(out, " {name:>width$}");
+    }
+    out.push('\n');
+    for of in &found.budget {
+        let (name, factor, unit) = match of.joint {
+            Some(joint) => (format!("{:>5}", joint + 1), 1.0, "Nm"),
+            None => ("  all".to_owned(), 100.0, "% of the torque"),
+        };
+        let _ = write!(out, "{name}");
+        let values = [of.model, of.parameters]
+            .into_iter()
+            .chain(of.effects.iter().map(|(_, rms)| *rms))
+            .chain([of.unexplained, of.noise]);
+        for value in values {
+            let _ = write!(out, " {:>width$.4}", factor * value);
+        }
+        let _ = writeln!(out, " {unit}");
+    }
+}
+
+/// The everyday error of the joints.
+fn everyday(found: &Diagnosis) -> Option<String> {
+    let percent = found.everyday.iter().map(|x| 100.0 * x);
+    let low = percent.clone().fold(f64::INFINITY, f64::min);
+    let high = percent.fold(0.0, f64::max);
+    low.is_finite().then(|| {
+        format!(
+            "everyday error: {low:.1} to {high:.1} % of the joints' torques; usual is up to 3 %"
+        )
+    })
+}
+
+/// The joint with most of the gap, and where it is most of the time.
+fn place_text(found: &Diagnosis) -> Option<String> {
+    let by_share = |a: &&Place, b: &&Place| a.share.total_cmp(&b.share);
+    let whole = found.places.iter().filter(|of| of.regime == "all" && of.joint.is_some());
+    let most = whole.max_by(by_share)?;
+    let joint = most.joint?;
+    let pieces = found.places.iter().filter(|of| of.joint == Some(joint) && of.regime != "all");
+    let piece = pieces.filter(|of| of.span.is_none()).max_by(by_share);
+    let mut text = format!("joint {}, {:.0} %", joint + 1, 100.0 * most.share);
+    if let Some(piece) = piece.filter(|of| of.share > 0.5 * most.share) {
+        let _ = write!(text, ", mostly at {}", piece.regime);
+    }
+    Some(text)
+}
+
+/// How far the gap shrinks.
+fn shrink_text(found: &Diagnosis, basis: &Basis) -> String {
+    let of = &found.shrink.total;
+    let [value, low, high] = [of.value, of.low, of.high].map(|x| 100.0 * x);
+    let data = &basis.heldout;
+    if value < 0.0 {
+        let [value, low, high] = [-value, -high, -low];
+        return format!(
+            "the gap grows by {value:.1} % ({low:.1} to {high:.1}) in the held-out {data}"
+        );
+    }
+    format!("the gap shrinks by {value:.1} % ({low:.1} to {high:.1}) in the held-out {data}")
 }

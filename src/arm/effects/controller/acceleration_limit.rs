@@ -1,11 +1,17 @@
 //! Acceleration that is higher or lower.
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, Timing, bounded};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, Timing, bounded,
+};
 
 pub(in crate::arm::effects) const ACCELERATION_LIMIT: Effect = Effect {
     id: "acceleration_limit",
     channel: Channel::Motion,
     scope: Scope::Robot,
+    subject: Subject::Drive,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: None,
     title: "Acceleration that is higher or lower",
     law: "acceleration × factor",
     source: "docs/controller.md",

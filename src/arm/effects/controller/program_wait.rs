@@ -1,11 +1,17 @@
 //! A wait that is not in the model.
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, Timing, free};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, Timing, free,
+};
 
 pub(in crate::arm::effects) const PROGRAM_WAIT: Effect = Effect {
     id: "program_wait",
     channel: Channel::Motion,
     scope: Scope::Robot,
+    subject: Subject::Drive,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: None,
     title: "A wait that the model does not know",
     law: "wait between two movements",
     source: "docs/controller.md",

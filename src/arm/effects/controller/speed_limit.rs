@@ -1,11 +1,17 @@
 //! Speed that is limited.
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, Timing, bounded};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, Timing, bounded,
+};
 
 pub(in crate::arm::effects) const SPEED_LIMIT: Effect = Effect {
     id: "speed_limit",
     channel: Channel::Motion,
     scope: Scope::Robot,
+    subject: Subject::Drive,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: None,
     title: "Speed that is limited",
     law: "speed × factor",
     source: "docs/controller.md",

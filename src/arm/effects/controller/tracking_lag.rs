@@ -1,11 +1,17 @@
 //! Lag of the servos.
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, Timing, free};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, Timing, free,
+};
 
 pub(in crate::arm::effects) const TRACKING_LAG: Effect = Effect {
     id: "tracking_lag",
     channel: Channel::Motion,
     scope: Scope::Robot,
+    subject: Subject::Drive,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: None,
     title: "Lag of the servos",
     law: "q(t) = q_ref(t − lag)",
     source: "docs/controller.md",

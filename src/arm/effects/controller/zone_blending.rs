@@ -1,11 +1,17 @@
 //! Corners that are cut more or less.
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, Timing, bounded};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, Timing, bounded,
+};
 
 pub(in crate::arm::effects) const ZONE_BLENDING: Effect = Effect {
     id: "zone_blending",
     channel: Channel::Motion,
     scope: Scope::Robot,
+    subject: Subject::Drive,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: None,
     title: "Corners that are cut more or less",
     law: "zone radius × factor",
     source: "docs/controller.md",

@@ -3,7 +3,8 @@
 use crate::arm::robot::LawState;
 
 use crate::arm::effects::effect::{
-    Channel, Coordinate, Effect, Form, Role, Scope, Values, bounded, every, free, linear, shaped,
+    Acts, Channel, Coordinate, Effect, Form, Nature, Role, Scope, Subject, Values, bounded, every,
+    free, linear, shaped,
 };
 use crate::arm::effects::window::within;
 
@@ -11,6 +12,10 @@ pub(in crate::arm::effects) const BRAKE_DRAG: Effect = Effect {
     id: "brake_drag",
     channel: Channel::Torque,
     scope: Scope::Joint,
+    subject: Subject::Drive,
+    nature: Nature::Law,
+    acts: Acts::InWindow,
+    variable: None,
     title: "Drag of a brake",
     law: "τ = drag·s, from t_start_s to t_end_s where these are given",
     source: "ABB product manuals: brake release check",

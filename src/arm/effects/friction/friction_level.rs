@@ -2,18 +2,26 @@
 
 use crate::arm::robot::Model;
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, every, free, linear};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, every, free, linear,
+};
 
 pub(in crate::arm::effects) const FRICTION_LEVEL: Effect = Effect {
     id: "friction_level",
     channel: Channel::Torque,
     scope: Scope::Joint,
+    subject: Subject::Drive,
+    nature: Nature::Parameter,
+    acts: Acts::Always,
+    variable: None,
     title: "Level of friction",
     law: "τ = coulomb·s + viscous·q̇",
     source: "J. Swevers et al., Dynamic model identification for industrial robots, IEEE CSM 27, 2007",
     parameters: &[
-        free("coulomb", "Nm", "change of Coulomb friction"),
-        free("viscous", "Nm s/rad", "change of viscous friction"),
+        free("coulomb", "Nm", "change of Coulomb friction")
+            .beside(|model, joint| Some(model.friction.coulomb[joint])),
+        free("viscous", "Nm s/rad", "change of viscous friction")
+            .beside(|model, joint| Some(model.friction.viscous[joint])),
     ],
     coordinates: &[linear(|of| 0.3 * of.coulomb), linear(|of| 0.3 * of.viscous)],
     published: None,

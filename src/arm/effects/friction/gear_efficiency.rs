@@ -2,12 +2,18 @@
 
 use crate::arm::robot::LawState;
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, Values, bounded, every, linear};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, Values, Variable, bounded, every, linear,
+};
 
 pub(in crate::arm::effects) const GEAR_EFFICIENCY: Effect = Effect {
     id: "gear_efficiency",
     channel: Channel::Torque,
     scope: Scope::Joint,
+    subject: Subject::Drive,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: Some(Variable::LoadSense),
     title: "Efficiency of the gear",
     law: "τ = motoring·|τ_L|·s where τ_L·q̇ > 0, generating·|τ_L|·s elsewhere",
     source: "A. Abedinnasab et al.; harmonic drives lose more when driven back: T. Tuttle, W. Seering, IEEE T-RA 12, 1996",

@@ -2,12 +2,18 @@
 
 use crate::arm::robot::LawState;
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, Values, bounded, every, linear};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, Values, Variable, bounded, every, linear,
+};
 
 pub(in crate::arm::effects) const LOAD_FRICTION: Effect = Effect {
     id: "load_friction",
     channel: Channel::Torque,
     scope: Scope::Joint,
+    subject: Subject::Drive,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: Some(Variable::LoadSense),
     title: "Friction of the load",
     law: "τ = mu·|τ_L|·s",
     source: "P. Hamon et al., Dynamic identification of robot with a dry friction model depending on load and velocity, ICRA 2010; A. Bittencourt, S. Gunnarsson, 2012",

@@ -3,13 +3,18 @@
 use crate::arm::robot::LawState;
 
 use crate::arm::effects::effect::{
-    Channel, Effect, Form, Scope, Values, bounded, every, free, linear, shape,
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, Values, Variable, bounded, every, free,
+    linear, shape,
 };
 
 pub(in crate::arm::effects) const NONLINEAR_VISCOUS: Effect = Effect {
     id: "nonlinear_viscous",
     channel: Channel::Torque,
     scope: Scope::Joint,
+    subject: Subject::Drive,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: Some(Variable::Speed),
     title: "Nonlinear viscous friction",
     law: "τ = coefficient·|q̇|^exponent·s",
     source: "A. Waiboer, R. Aarts, B. Jonker, Velocity dependence of joint friction in robotic manipulators with gear transmissions, 2005",

@@ -3,7 +3,8 @@
 use crate::arm::robot::LawState;
 
 use crate::arm::effects::effect::{
-    Channel, Effect, Form, Scope, Values, bounded, every, free, linear,
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, Values, Variable, bounded, every, free,
+    linear,
 };
 use crate::arm::effects::waves::AMPLITUDE_AND_PHASE;
 
@@ -11,6 +12,10 @@ pub(in crate::arm::effects) const POSITION_FRICTION: Effect = Effect {
     id: "position_friction",
     channel: Channel::Torque,
     scope: Scope::Joint,
+    subject: Subject::Drive,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: Some(Variable::PositionSense),
     title: "Friction over the angle",
     law: "τ = amplitude·cos(q − phase)·s",
     source: "B. Armstrong-Hélouvry, Control of Machines with Friction, 1991: friction over position",

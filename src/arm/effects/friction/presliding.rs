@@ -1,12 +1,18 @@
 //! Friction that builds up over a distance after each reversal.
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, bounded, every, shape};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, Variable, bounded, every, shape,
+};
 use crate::arm::effects::motion::Motion;
 
 pub(in crate::arm::effects) const PRESLIDING: Effect = Effect {
     id: "presliding",
     channel: Channel::Torque,
     scope: Scope::Joint,
+    subject: Subject::Drive,
+    nature: Nature::Law,
+    acts: Acts::AfterReversals,
+    variable: Some(Variable::Reversal),
     title: "Pre-sliding",
     law: "dz/dq = (1 − s z)/distance, τ = coulomb·(z − s)",
     source: "P. Dahl, A solid friction model, 1968",
@@ -15,7 +21,8 @@ pub(in crate::arm::effects) const PRESLIDING: Effect = Effect {
         "rad",
         "angle in which 1/e is left to build up",
         [1e-5, 0.2],
-    )],
+    )
+    .everyday(0.002)],
     coordinates: &[shape(|_| vec![0.001, 0.003, 0.008, 0.02])],
     published: None,
     joints: every,

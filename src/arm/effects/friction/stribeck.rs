@@ -3,13 +3,18 @@
 use crate::arm::robot::LawState;
 
 use crate::arm::effects::effect::{
-    Channel, Effect, Form, Scope, Values, bounded, every, free, linear, shape,
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, Values, Variable, bounded, every, free,
+    linear, shape,
 };
 
 pub(in crate::arm::effects) const STRIBECK: Effect = Effect {
     id: "stribeck",
     channel: Channel::Torque,
     scope: Scope::Joint,
+    subject: Subject::Drive,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: Some(Variable::Speed),
     title: "Stribeck friction",
     law: "τ = stiction·exp(−(q̇/velocity)²)·s",
     source: "B. Armstrong-Hélouvry, P. Dupont, C. Canudas de Wit, Automatica 30, 1994",

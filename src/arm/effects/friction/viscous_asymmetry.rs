@@ -2,12 +2,18 @@
 
 use crate::arm::robot::LawState;
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, Values, every, free, linear};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, Values, Variable, every, free, linear,
+};
 
 pub(in crate::arm::effects) const VISCOUS_ASYMMETRY: Effect = Effect {
     id: "viscous_asymmetry",
     channel: Channel::Torque,
     scope: Scope::Joint,
+    subject: Subject::Drive,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: Some(Variable::Speed),
     title: "Asymmetry of viscous friction",
     law: "τ = asymmetry·|q̇|",
     source: "J. Hollerbach, W. Khalil, M. Gautier, Model identification, Springer Handbook of Robotics, 2016",

@@ -3,20 +3,25 @@
 use crate::arm::robot::LawState;
 
 use crate::arm::effects::effect::{
-    Channel, Effect, Form, Scope, Values, bounded, every, free, linear, shape,
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, Values, Variable, bounded, every, free,
+    linear, shape,
 };
 
 pub(in crate::arm::effects) const WARM_UP: Effect = Effect {
     id: "warm_up",
     channel: Channel::Torque,
     scope: Scope::Joint,
+    subject: Subject::Drive,
+    nature: Nature::Law,
+    acts: Acts::OverTime,
+    variable: Some(Variable::TimeSense),
     title: "Warming up",
     law: "τ = (coulomb·s + viscous·q̇)·exp(−t/time_constant)",
     source: "A. Bittencourt, E. Wernholt, S. Sander-Tavallaey, T. Brogårdh, An extended friction model to capture load and temperature effects in robot joints, IROS 2010",
     parameters: &[
         free("coulomb", "Nm", "Coulomb friction more at the start"),
-        free("viscous", "Nm s/rad", "viscous friction more at the start"),
-        bounded("time_constant", "s", "time in which 1/e of it is left", [1.0, 36000.0]),
+        bounded("viscous", "Nm s/rad", "viscous friction more at the start", [0.0, f64::INFINITY]),
+        bounded("time_constant", "s", "time in which 1/e of it is left", [30.0, 36000.0]),
     ],
     coordinates: &[
         linear(|of| 0.3 * of.coulomb),

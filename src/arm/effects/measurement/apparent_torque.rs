@@ -2,12 +2,18 @@
 
 use crate::arm::robot::Model;
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, every, free, linear};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, every, free, linear,
+};
 
 pub(in crate::arm::effects) const APPARENT_TORQUE: Effect = Effect {
     id: "apparent_torque",
     channel: Channel::Torque,
     scope: Scope::Joint,
+    subject: Subject::Measurement,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: None,
     title: "Apparent torque",
     law: "τ = inertia·q̈ + viscous·q̇",
     source: "docs/identification.md",

@@ -1,12 +1,18 @@
 //! Torque below proportionality to current due to saturation of the iron.
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, bounded, every, linear, shape};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, Variable, bounded, every, linear, shape,
+};
 use crate::arm::effects::motion::Motion;
 
 pub(in crate::arm::effects) const CURRENT_SATURATION: Effect = Effect {
     id: "current_saturation",
     channel: Channel::Torque,
     scope: Scope::Joint,
+    subject: Subject::Measurement,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: Some(Variable::Load),
     title: "Saturation of the motor",
     law: "τ = τ·(1 + error·(|τ|/τ_max)^exponent), logged; τ_max: the limit, else of the motion",
     source: "G. Terzic, M. Jadric, IEEE T-IE 48, 2001",

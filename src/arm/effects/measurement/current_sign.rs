@@ -1,12 +1,18 @@
 //! A current with inverted sign.
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, bounded, every};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, bounded, every,
+};
 use crate::arm::effects::motion::Motion;
 
 pub(in crate::arm::effects) const CURRENT_SIGN: Effect = Effect {
     id: "current_sign",
     channel: Channel::Torque,
     scope: Scope::Joint,
+    subject: Subject::Measurement,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: None,
     title: "Sign of the current",
     law: "τ = −τ, logged",
     source: "docs/identification.md",

@@ -1,11 +1,17 @@
 //! An angle that differs from the log: calibration error, slipped revolution counter.
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, bounded, every, linear};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, bounded, every, linear,
+};
 
 pub(in crate::arm::effects) const ENCODER_OFFSET: Effect = Effect {
     id: "encoder_offset",
     channel: Channel::Torque,
     scope: Scope::Joint,
+    subject: Subject::Measurement,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: None,
     title: "Offset of an angle",
     law: "τ = τ(q + offset)",
     source: "FACTS of calibration: fine calibration is within 0.5 mrad, one motor turn is 2π/n",

@@ -1,7 +1,8 @@
 //! Torques logged after a filter.
 
 use crate::arm::effects::effect::{
-    Channel, Coordinate, Effect, Form, Role, Scope, bounded, every, shape, shaped,
+    Acts, Channel, Coordinate, Effect, Form, Nature, Role, Scope, Subject, Variable, bounded,
+    every, shape, shaped,
 };
 use crate::arm::effects::motion::Motion;
 use crate::arm::effects::response::Response;
@@ -10,11 +11,15 @@ pub(in crate::arm::effects) const FILTER_LAG: Effect = Effect {
     id: "filter_lag",
     channel: Channel::Torque,
     scope: Scope::Robot,
+    subject: Subject::Measurement,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: Some(Variable::Reversal),
     title: "Lag of a filter",
     law: "lag·dτ/dt + τ_logged = τ",
     source: "docs/identification.md",
     parameters: &[
-        bounded("lag", "s", "time constant", [0.0, 0.1]),
+        bounded("lag", "s", "time constant", [0.0, 0.1]).everyday(0.004),
         bounded("only_joint", "1", "the only joint that has it; 0: all", [0.0, 7.0]),
     ],
     coordinates: &[

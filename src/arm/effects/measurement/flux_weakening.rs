@@ -1,12 +1,18 @@
 //! A torque constant that falls at high speed.
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, bounded, every, linear, shape};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, Variable, bounded, every, linear, shape,
+};
 use crate::arm::effects::motion::Motion;
 
 pub(in crate::arm::effects) const FLUX_WEAKENING: Effect = Effect {
     id: "flux_weakening",
     channel: Channel::Torque,
     scope: Scope::Joint,
+    subject: Subject::Measurement,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: Some(Variable::LoadSpeed),
     title: "Flux weakening",
     law: "τ = τ·(1 + error·(|q̇| − velocity)/(q̇_max − velocity)) above the velocity, logged; q̇_max: the limit, else of the motion",
     source: "T. Jahns, Flux-weakening regime operation of an interior permanent-magnet synchronous motor drive, IEEE T-IA 23, 1987",

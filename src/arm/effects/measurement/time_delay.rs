@@ -1,7 +1,8 @@
 //! Torques that are logged with a delay relative to positions.
 
 use crate::arm::effects::effect::{
-    Channel, Coordinate, Effect, Form, Role, Scope, bounded, every, shape, shaped,
+    Acts, Channel, Coordinate, Effect, Form, Nature, Role, Scope, Subject, Variable, bounded,
+    every, shape, shaped,
 };
 use crate::arm::effects::motion::Motion;
 use crate::arm::effects::response::Response;
@@ -10,11 +11,15 @@ pub(in crate::arm::effects) const TIME_DELAY: Effect = Effect {
     id: "time_delay",
     channel: Channel::Torque,
     scope: Scope::Robot,
+    subject: Subject::Measurement,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: Some(Variable::Reversal),
     title: "Delay",
     law: "τ = τ(t − delay), logged",
     source: "docs/identification.md",
     parameters: &[
-        bounded("delay", "s", "torque later than position", [-0.05, 0.05]),
+        bounded("delay", "s", "torque later than position", [-0.05, 0.05]).everyday(0.004),
         bounded("only_joint", "1", "the only joint that has it; 0: all", [0.0, 7.0]),
     ],
     coordinates: &[

@@ -1,11 +1,17 @@
 //! A torque constant or current sensor gain that differs from the stated one.
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, bounded, every, linear};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, bounded, every, linear,
+};
 
 pub(in crate::arm::effects) const TORQUE_CONSTANT: Effect = Effect {
     id: "torque_constant",
     channel: Channel::Torque,
     scope: Scope::Joint,
+    subject: Subject::Measurement,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: None,
     title: "Torque constant",
     law: "τ = (1 + error) τ",
     source: "M. Gautier, S. Briot, Global identification of drive gains parameters of robots using a known payload, ICRA 2011",

@@ -1,11 +1,17 @@
 //! An offset of amplifier or sensor, or Coulomb friction that differs between directions.
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, every, free, linear};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, every, free, linear,
+};
 
 pub(in crate::arm::effects) const TORQUE_OFFSET: Effect = Effect {
     id: "torque_offset",
     channel: Channel::Torque,
     scope: Scope::Joint,
+    subject: Subject::Measurement,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: None,
     title: "Offset of the torque",
     law: "τ = offset",
     source: "B. Armstrong-Hélouvry et al., Automatica 30, 1994: asymmetric Coulomb friction is the same while a joint moves",

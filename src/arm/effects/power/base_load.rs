@@ -1,11 +1,15 @@
 //! Controller, fans, brakes.
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, free};
+use crate::arm::effects::effect::{Acts, Channel, Effect, Form, Nature, Scope, Subject, free};
 
 pub(in crate::arm::effects) const BASE_LOAD: Effect = Effect {
     id: "base_load",
     channel: Channel::Power,
     scope: Scope::Robot,
+    subject: Subject::Drive,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: None,
     title: "Controller, fans, brakes",
     law: "P = power",
     source: "docs/energy.md",

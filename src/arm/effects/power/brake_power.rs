@@ -2,12 +2,16 @@
 
 use crate::arm::robot::Model;
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, free};
+use crate::arm::effects::effect::{Acts, Channel, Effect, Form, Nature, Scope, Subject, free};
 
 pub(in crate::arm::effects) const BRAKE_POWER: Effect = Effect {
     id: "brake_power",
     channel: Channel::Power,
     scope: Scope::Robot,
+    subject: Subject::Drive,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: None,
     title: "Coils of the brakes",
     law: "P = power while they are released",
     source: "docs/energy.md",

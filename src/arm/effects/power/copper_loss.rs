@@ -2,12 +2,18 @@
 
 use crate::arm::robot::Model;
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, every, free};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, every, free,
+};
 
 pub(in crate::arm::effects) const COPPER_LOSS: Effect = Effect {
     id: "copper_loss",
     channel: Channel::Power,
     scope: Scope::Joint,
+    subject: Subject::Drive,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: None,
     title: "Loss in the windings",
     law: "P = loss·τ²",
     source: "docs/energy.md",

@@ -1,11 +1,15 @@
 //! Loss of inverter and cables.
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, free};
+use crate::arm::effects::effect::{Acts, Channel, Effect, Form, Nature, Scope, Subject, free};
 
 pub(in crate::arm::effects) const INVERTER_LOSS: Effect = Effect {
     id: "inverter_loss",
     channel: Channel::Power,
     scope: Scope::Robot,
+    subject: Subject::Drive,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: None,
     title: "Loss of inverter and cables",
     law: "P = per_current·Σ|τ|/(n k_t)",
     source: "docs/energy.md",

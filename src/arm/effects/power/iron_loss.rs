@@ -1,11 +1,17 @@
 //! Loss in the iron.
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, every, free};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, every, free,
+};
 
 pub(in crate::arm::effects) const IRON_LOSS: Effect = Effect {
     id: "iron_loss",
     channel: Channel::Power,
     scope: Scope::Joint,
+    subject: Subject::Drive,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: None,
     title: "Loss in the iron",
     law: "P = loss·q̇²",
     source: "docs/energy.md",

@@ -1,11 +1,15 @@
 //! Braking energy that is lost.
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope};
+use crate::arm::effects::effect::{Acts, Channel, Effect, Form, Nature, Scope, Subject};
 
 pub(in crate::arm::effects) const NO_REGENERATION: Effect = Effect {
     id: "no_regeneration",
     channel: Channel::Power,
     scope: Scope::Robot,
+    subject: Subject::Drive,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: None,
     title: "Braking energy that is lost",
     law: "P = max(P, 0)",
     source: "docs/energy.md",

@@ -4,13 +4,19 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::arm::robot::Model;
 
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, bounded, free, linear};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, bounded, free, linear,
+};
 use crate::arm::effects::waves::AMPLITUDE_AND_PHASE;
 
 pub(in crate::arm::effects) const BASE_TILT: Effect = Effect {
     id: "base_tilt",
     channel: Channel::Torque,
     scope: Scope::Robot,
+    subject: Subject::Body,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: None,
     title: "Tilt of the base",
     law: "gravity turned by angle about (−sin direction, cos direction, 0)",
     source: "ABB: Gravity Alpha and Beta of the base",

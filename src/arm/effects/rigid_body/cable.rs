@@ -1,12 +1,18 @@
 //! A dress pack that pulls a joint towards a central angle.
 
 use super::springs::{STIFFNESS_AND_CENTRE, spring};
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, free, linear};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, Variable, free, linear,
+};
 
 pub(in crate::arm::effects) const CABLE: Effect = Effect {
     id: "cable",
     channel: Channel::Torque,
     scope: Scope::Joint,
+    subject: Subject::Body,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: Some(Variable::Position),
     title: "Hose or cable",
     law: "τ = stiffness·(q − centre)",
     source: "FloBaRoID simulation of joint springs",

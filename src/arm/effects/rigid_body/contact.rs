@@ -9,7 +9,8 @@ use crate::arm::robot::{GRAVITY, Link, Model};
 
 use super::bodies::added as with_body;
 use crate::arm::effects::effect::{
-    Channel, Coordinate, Effect, Form, Published, Role, Scope, bounded, free, linear, shaped,
+    Acts, Channel, Coordinate, Effect, Form, Nature, Published, Role, Scope, Subject, bounded,
+    free, linear, shaped,
 };
 use crate::arm::effects::motion::Motion;
 use crate::arm::effects::scale::Scale;
@@ -19,6 +20,10 @@ pub(in crate::arm::effects) const CONTACT: Effect = Effect {
     id: "contact",
     channel: Channel::Torque,
     scope: Scope::Robot,
+    subject: Subject::Body,
+    nature: Nature::Law,
+    acts: Acts::InWindow,
+    variable: None,
     title: "A force from outside",
     law: "τ = −Jᵀ·force·min(1, sin πx/sin(π·rise)) on the flange, x from 0 to 1 from t_start_s to \
           t_end_s, repeated every period_s",
@@ -36,7 +41,7 @@ pub(in crate::arm::effects) const CONTACT: Effect = Effect {
         linear(usual),
         linear(usual),
         linear(usual),
-        Coordinate { role: Role::Choice(|_| Vec::new()), usual: |_| 0.0 },
+        Coordinate { role: Role::Rise { most: 0.5, share: grown }, usual: |_| 0.0 },
         Coordinate { role: Role::Choice(|_| Vec::new()), usual: shaped },
         Coordinate { role: Role::Choice(|_| Vec::new()), usual: shaped },
         Coordinate { role: Role::Choice(|_| Vec::new()), usual: shaped },
@@ -94,8 +99,12 @@ fn share_of(t: f64, window: &[f64]) -> f64 {
     if !within(t, *start, *end, *period) {
         return 0.0;
     }
-    let x = (in_period(t, *period) - start) / (end - start);
-    if *rise > 0.0 { ((PI * x).sin() / (PI * rise).sin()).min(1.0) } else { 1.0 }
+    grown(*rise, (in_period(t, *period) - start) / (end - start))
+}
+
+/// Acting share of the force at a part of the window.
+fn grown(rise: f64, x: f64) -> f64 {
+    if rise > 0.0 { ((PI * x).sin() / (PI * rise).sin()).min(1.0) } else { 1.0 }
 }
 
 /// A massless arm with a mass at its flange, whose gravity is the force.

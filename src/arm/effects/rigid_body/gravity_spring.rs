@@ -1,12 +1,18 @@
 //! A spring or balancer that is missing in the model.
 
 use super::springs::{STIFFNESS_AND_CENTRE, spring};
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, free, linear};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, Variable, free, linear,
+};
 
 pub(in crate::arm::effects) const GRAVITY_SPRING: Effect = Effect {
     id: "gravity_spring",
     channel: Channel::Torque,
     scope: Scope::Joint,
+    subject: Subject::Body,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: Some(Variable::Position),
     title: "Spring or balancer",
     law: "τ = stiffness·(q − centre)",
     source: "A. Klimchik et al., Advanced robot calibration using partial pose measurements and gravity compensators, arXiv 1311.6674",

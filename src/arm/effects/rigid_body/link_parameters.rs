@@ -5,13 +5,19 @@ use nalgebra::Isometry3;
 use crate::arm::robot::Model;
 
 use super::bodies::added;
-use crate::arm::effects::effect::{Channel, Effect, Form, Scope, every, free, linear};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Scope, Subject, every, free, linear,
+};
 use crate::arm::effects::scale::Scale;
 
 pub(in crate::arm::effects) const LINK_PARAMETERS: Effect = Effect {
     id: "link_parameters",
     channel: Channel::Torque,
     scope: Scope::Joint,
+    subject: Subject::Body,
+    nature: Nature::Parameters,
+    acts: Acts::Always,
+    variable: None,
     title: "Masses, centres and inertias of the links",
     law: "τ = Y(q, q̇, q̈)·Δπ",
     source: "docs/identification.md",

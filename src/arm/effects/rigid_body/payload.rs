@@ -3,12 +3,18 @@
 use crate::arm::robot::Model;
 
 use super::bodies::{about_centre, about_origin, added};
-use crate::arm::effects::effect::{Channel, Effect, Form, Published, Scope, free, linear};
+use crate::arm::effects::effect::{
+    Acts, Channel, Effect, Form, Nature, Published, Scope, Subject, free, linear,
+};
 
 pub(in crate::arm::effects) const PAYLOAD: Effect = Effect {
     id: "payload",
     channel: Channel::Torque,
     scope: Scope::Robot,
+    subject: Subject::Body,
+    nature: Nature::Parameter,
+    acts: Acts::Always,
+    variable: None,
     title: "Payload",
     law: "τ = Y_flange·(mass, mass·com, inertia)",
     source: "C. Atkeson, C. An, J. Hollerbach, Estimation of inertial parameters of manipulator loads and links, IJRR 5, 1986",

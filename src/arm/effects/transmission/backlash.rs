@@ -2,7 +2,8 @@
 
 use super::elasticity::displaced;
 use crate::arm::effects::effect::{
-    Channel, Coordinate, Effect, Form, Role, Scope, bounded, every, shape, shaped,
+    Acts, Channel, Coordinate, Effect, Form, Nature, Role, Scope, Subject, Variable, bounded,
+    every, shape, shaped,
 };
 use crate::arm::effects::motion::Motion;
 
@@ -10,10 +11,14 @@ pub(in crate::arm::effects) const BACKLASH: Effect = Effect {
     id: "backlash",
     channel: Channel::Torque,
     scope: Scope::Joint,
+    subject: Subject::Drive,
+    nature: Nature::Law,
+    acts: Acts::AfterReversals,
+    variable: Some(Variable::Reversal),
     title: "Backlash",
     law: "width, stiffness 0: τ = −τ_L until the motor has turned by gap after each change of the sign of τ_L; \
           width > 0: q_link = q − gap/2·tanh(τ_L/width); stiffness k > 0: q_link = q − δ, \
-          M·δ̈ + 0.8·√(k·M)·δ̇ + k·(δ − δ within ±gap/2) = τ_L",
+          M·δ̈ = τ_L within the gap, M·δ̈ + 0.8·√(k·M)·δ̇ + k·(δ ∓ gap/2) = τ_L at its sides",
     source: "M. Nordin, P.-O. Gutman, Controlling mechanical systems with backlash: a survey, Automatica 38, 2002",
     parameters: &[
         bounded("gap", "rad", "angle of the gap at the joint", [1e-5, 0.1]),
@@ -21,7 +26,7 @@ pub(in crate::arm::effects) const BACKLASH: Effect = Effect {
         bounded("stiffness", "Nm/rad", "stiffness of the gear at a side", [0.0, f64::INFINITY]),
     ],
     coordinates: &[
-        shape(|_| vec![0.0005, 0.001, 0.003, 0.008, 0.02]),
+        shape(|_| vec![0.0007, 0.003, 0.012]),
         Coordinate {
             role: Role::Choice(|of| WIDTHS.map(|width| width * of.torque[0]).to_vec()),
             usual: shaped,
@@ -42,10 +47,10 @@ pub(in crate::arm::effects) const BACKLASH: Effect = Effect {
 };
 
 /// Tried widths, as shares of the torque.
-const WIDTHS: [f64; 4] = [0.0, 0.02, 0.06, 0.2];
+const WIDTHS: [f64; 3] = [0.0, 0.03, 0.12];
 
 /// Tried deflections of gears under the torque \[rad\]; 0 for stiff gears.
-const DEFLECTIONS: [f64; 4] = [0.0, 2.5e-4, 8e-4, 2.5e-3];
+const DEFLECTIONS: [f64; 4] = [0.0, 1e-4, 5e-4, 2e-3];
 
 fn added(motion: &Motion<'_>, joint: usize, values: &[f64]) -> Vec<(usize, Vec<f64>)> {
     let [gap, width, stiffness] = [values[0], values[1], values[2]];
@@ -55,15 +60,25 @@ fn added(motion: &Motion<'_>, joint: usize, values: &[f64]) -> Vec<(usize, Vec<f
             Vec::new()
         } else {
             let gear = Gear { gap, stiffness, step: motion.step(), closed: motion.closed };
-            displaced(motion, joint, &gear.caught(&motion.gear[joint], motion.inertias(joint)))
+            at_joint(
+                joint,
+                displaced(motion, joint, &gear.caught(&motion.gear[joint], motion.inertias(joint))),
+            )
         };
     }
     if width > 0.0 {
         let side = |tau: &f64| 0.5 * gap * (tau / width).tanh();
         let behind: Vec<f64> = motion.gear[joint].iter().map(side).collect();
-        return displaced(motion, joint, &behind);
+        return at_joint(joint, displaced(motion, joint, &behind));
     }
     crossed(motion, joint, gap)
+}
+
+/// What a link does to its own motor; the other motors feel its jumps through all links and gears
+/// between, which damp them.
+fn at_joint(joint: usize, mut torques: Vec<(usize, Vec<f64>)>) -> Vec<(usize, Vec<f64>)> {
+    torques.retain(|(of, _)| *of == joint);
+    torques
 }
 
 /// The gear transmits no torque while its gap is crossed.
@@ -90,7 +105,7 @@ fn crossed(motion: &Motion<'_>, joint: usize, gap: f64) -> Vec<(usize, Vec<f64>)
 const DAMPING: f64 = 0.4;
 /// Largest product of eigenfrequency and integration step; largest number of steps per row.
 const FINEST: f64 = 0.3;
-const MOST_STEPS: f64 = 400.0;
+const MOST_STEPS: f64 = 100.0;
 
 /// A gear with a gap and elastic sides.
 struct Gear {
@@ -121,9 +136,11 @@ impl Gear {
                 let next = if row + 1 < rows { row + 1 } else { last };
                 // Inertias too small for the finest step are enlarged.
                 let mass = inertia[row].max(stiffness * (h / FINEST).powi(2));
-                let damper = 2.0 * DAMPING * (stiffness * mass).sqrt();
+                let damping = 2.0 * DAMPING * (stiffness * mass).sqrt();
                 for k in 0..steps as usize {
                     let pull = load[row] + (load[next] - load[row]) * k as f64 / steps;
+                    // The link flies freely from side to side.
+                    let damper = if x.abs() > 0.5 * gap { damping } else { 0.0 };
                     v = (v + h * (pull - spring(x)) / mass) / (1.0 + h * damper / mass);
                     x += h * v;
                 }

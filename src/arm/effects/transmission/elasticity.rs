@@ -1,16 +1,18 @@
 //! An elastic joint: the link angle lags behind the logged motor angle.
 
-use crate::arm::dynamics::Load;
-
 use crate::arm::effects::effect::{
-    Channel, Effect, Form, Published, Scope, bounded, every, linear,
+    Acts, Channel, Effect, Form, Nature, Published, Scope, Subject, bounded, every, linear,
 };
-use crate::arm::effects::motion::Motion;
+use crate::arm::effects::motion::{Motion, Slopes};
 
 pub(in crate::arm::effects) const ELASTICITY: Effect = Effect {
     id: "elasticity",
     channel: Channel::Torque,
     scope: Scope::Joint,
+    subject: Subject::Drive,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: None,
     title: "Elasticity of a joint",
     law: "q_link = q − τ_L/stiffness",
     source: "M. Spong, Modeling and control of elastic joint robots, ASME JDSMC 109, 1987",
@@ -35,8 +37,8 @@ fn added(motion: &Motion<'_>, joint: usize, values: &[f64]) -> Vec<(usize, Vec<f
     displaced(motion, joint, &behind)
 }
 
-/// Change of the torques if the link is `behind` \[rad\] the motor: rotor torques at the logged
-/// angle, rigid-body torques at the link angle.
+/// Change of the torques if the link is `behind` \[rad\] the motor, to first order: rotor torques at
+/// the logged angle, rigid-body torques at the link angle.
 pub(in crate::arm::effects) fn displaced(
     motion: &Motion<'_>,
     joint: usize,
@@ -44,15 +46,10 @@ pub(in crate::arm::effects) fn displaced(
 ) -> Vec<(usize, Vec<f64>)> {
     let rate = motion.changes(behind);
     let acceleration = motion.changes(&rate);
-    let mut moved = motion.clone();
-    for (series, less) in
-        [(&mut moved.q, behind), (&mut moved.qd, &rate[..]), (&mut moved.qdd, &acceleration[..])]
-    {
-        series[joint].iter_mut().zip(less).for_each(|(x, less)| *x -= less);
-    }
-    let after = moved.rigid(motion.there(), &Load::none());
-    let difference = |(after, before): (Vec<f64>, &Vec<f64>)| {
-        after.iter().zip(before).map(|(a, b)| a - b).collect::<Vec<f64>>()
+    let change = |slopes: &Slopes, row: usize| {
+        let [position, speed, inertia] = slopes[row];
+        -(position * behind[row] + speed * rate[row] + inertia * acceleration[row])
     };
-    after.into_iter().zip(motion.bodies()).map(difference).enumerate().collect()
+    let series = |slopes: &Slopes| (0..motion.rows()).map(|row| change(slopes, row)).collect();
+    motion.slopes(joint).iter().map(series).enumerate().collect()
 }

@@ -3,7 +3,8 @@
 use crate::arm::robot::LawState;
 
 use crate::arm::effects::effect::{
-    Channel, Coordinate, Effect, Form, Role, Scope, Values, bounded, every, free, linear, shaped,
+    Acts, Channel, Coordinate, Effect, Form, Nature, Role, Scope, Subject, Values, bounded, every,
+    free, linear, shaped,
 };
 use crate::arm::effects::scale::Scale;
 use crate::arm::effects::waves::AMPLITUDE_AND_PHASE;
@@ -12,6 +13,10 @@ pub(in crate::arm::effects) const RIPPLE: Effect = Effect {
     id: "ripple",
     channel: Channel::Torque,
     scope: Scope::Joint,
+    subject: Subject::Drive,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: None,
     title: "Ripple",
     law: "τ = amplitude·cos(order·q − phase)",
     source: "C. Kennedy, J. Desai, Modeling and control of the Mitsubishi PA-10 robot arm harmonic drive system, IEEE T-Mech 10, 2005",

@@ -3,21 +3,28 @@
 use crate::arm::robot::Model;
 
 use crate::arm::effects::effect::{
-    Channel, Coordinate, Effect, Form, Role, Scope, free, linear, shaped,
+    Acts, Channel, Coordinate, Effect, Form, Nature, Role, Scope, Subject, free, linear, shaped,
 };
 
 pub(in crate::arm::effects) const WRIST_COUPLING: Effect = Effect {
     id: "wrist_coupling",
     channel: Channel::Torque,
     scope: Scope::Robot,
+    subject: Subject::Drive,
+    nature: Nature::Law,
+    acts: Acts::Always,
+    variable: None,
     title: "Coupling of the wrist",
     law: "motor 6 turns with q̇₆ + coupling·q̇₅",
     source: "E. Villani/thanhndv212, figaroh examples: identification of the TX40",
     parameters: &[
         free("coupling", "1", "change of the turns of motor 6 per turn of axis 5"),
-        free("coulomb", "Nm", "change of Coulomb friction of motor 6"),
-        free("viscous", "Nm s/rad", "the same, viscous"),
-        free("inertia", "kg m2", "change of the inertia of rotor 6, at the joint"),
+        free("coulomb", "Nm", "change of Coulomb friction of motor 6")
+            .beside(|model, _| Some(model.friction.coulomb[model.dof - 1])),
+        free("viscous", "Nm s/rad", "the same, viscous")
+            .beside(|model, _| Some(model.friction.viscous[model.dof - 1])),
+        free("inertia", "kg m2", "change of the inertia of rotor 6, at the joint")
+            .beside(|model, _| model.motors.as_ref().map(|of| of.reflected_inertia(model.dof - 1))),
     ],
     coordinates: &[
         // Torques jump at reversals of the motor, so they have no derivative.
@@ -28,7 +35,7 @@ pub(in crate::arm::effects) const WRIST_COUPLING: Effect = Effect {
     ],
     published: None,
     joints: |dof| if dof == 6 { vec![5] } else { Vec::new() },
-    brings: &[],
+    brings: &["friction_level", "torque_offset"],
     confused: &["friction_level", "rotor_inertia"],
     experiment: ["--variant wrist", "axis 5 alone, 5 and 6 against each other"],
     form: Form::Model(change),

@@ -6,11 +6,8 @@ use tera::Context;
 
 use super::format::{INTERVAL, fixed, percent};
 use super::page::{ReportError, render};
-use super::reliability::reliability;
-use crate::examine::blind::Bin;
 use crate::gap::{
-    Attribution, COUNTED, Diagnosis, EXAMINED, Estimated, Interval, Place, Profile, Quantity, Said,
-    Shape, Trace,
+    Attribution, Diagnosis, Estimated, Finding, Interval, Place, Profile, Quantity, Shape, Trace,
 };
 use crate::tool::report::diagnose::{Basis, next, sentence, unknown};
 use crate::tool::report::svg::{Curve, Plot, Size};
@@ -89,11 +86,6 @@ pub fn diagnose_report(
     context.insert("sources", &pictures.sources);
     context.insert("shapes", &pictures.shapes.iter().map(shape).collect::<Vec<_>>());
     context.insert("residuals", &residuals(pictures));
-    // The examined cases and the model's error are of torques.
-    context.insert("has_torques", &!found.shrink.joints.is_empty());
-    context.insert("examined", &EXAMINED);
-    context.insert("reliability", &reliability(&COUNTED.map(counted)));
-    context.insert("error", &fixed(100.0 * found.error, 2));
     context.insert("model", &basis.model);
     render(include_str!("../../../../templates/diagnose.html.tera"), context)
 }
@@ -126,11 +118,7 @@ fn cards(found: &Diagnosis) -> Vec<Value> {
     cards
 }
 
-fn counted([from, to, stated, hits, of]: [f64; 5]) -> Bin {
-    Bin::new([from, to], stated, hits as usize, of as usize)
-}
-
-fn effect(of: &Said, asserted: bool) -> Value {
+fn effect(of: &Finding, asserted: bool) -> Value {
     let joints: Vec<String> = of.joints.iter().map(|joint| (joint + 1).to_string()).collect();
     let others: Vec<&str> = of.class.iter().copied().filter(|id| *id != of.effect.id).collect();
     let parameter = |of: &Estimated| {

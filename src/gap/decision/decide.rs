@@ -1,0 +1,362 @@
+//! From the most probable set of effects to what is asserted: a list of gates.
+
+use rayon::prelude::*;
+
+use super::calibration::calibrated;
+use super::finding::{Estimated, Finding, Remainder, Verdict};
+use super::search::{BEYOND, Candidate, Found, Search, Tried};
+use super::trail::{Entry, Gate};
+use crate::arm::effects::{Effect, Nature, Scope};
+use crate::gap::data::RecordKind;
+use crate::gap::design::Set;
+use crate::gap::model::Fitted;
+use crate::gap::trust::Trust;
+
+/// Ids of effects that a class has at most: more are unknown.
+const LARGEST_CLASS: usize = 3;
+/// Joints that are named of an effect of the robot at most.
+const FEW: usize = 2;
+/// Standard deviations of what any robot has within which a parameter is no finding.
+const EVERYDAY: f64 = 3.0;
+/// The same of a change since the baseline, which has them, too.
+const CHANGED: f64 = 0.5;
+/// Correlation from which on a law takes back another one: it is a form of that.
+const TAKES_BACK: f64 = -0.5;
+
+/// What the logs that were fitted say.
+pub(in crate::gap) struct Decision {
+    /// What is found.
+    pub verdict: Verdict,
+    /// What is asserted, by decreasing evidence.
+    pub effects: Vec<Finding>,
+    /// What was considered.
+    pub candidates: Vec<Finding>,
+    /// What no known law explains.
+    pub remainder: Vec<Remainder>,
+    /// The answers of all gates.
+    pub trail: Vec<Entry>,
+    /// What the model gets: asserted effects, and other values of parameters.
+    pub asserted: Vec<Candidate>,
+    /// Everyday error by joint, of its torque.
+    pub everyday: Vec<f64>,
+}
+
+/// An effect that was found, with what the gates ask about it.
+struct Weighed {
+    effect: &'static Effect,
+    pieces: Vec<WeighedPiece>,
+    /// The largest share of a joint's torque.
+    size: f64,
+    /// Evidence \[nats\].
+    nats: f64,
+    /// Joints that an effect of the robot reaches, where it reaches but few.
+    few: Vec<usize>,
+    class: Vec<&'static str>,
+    probability: f64,
+}
+
+/// An effect at a joint.
+struct WeighedPiece {
+    /// Its number among all pieces.
+    member: usize,
+    fitted: Fitted,
+    /// The joint that it changes most.
+    most: usize,
+    /// Share of that joint's torque.
+    share: f64,
+    /// Evidence \[nats\].
+    nats: f64,
+}
+
+/// What is asserted, and what is not.
+#[derive(Default)]
+struct Decided {
+    effects: Vec<Finding>,
+    candidates: Vec<Finding>,
+}
+
+/// Decides on what a search found.
+#[must_use]
+pub(in crate::gap) fn decide(
+    search: &Search<'_>,
+    none: &Found,
+    found: &Found,
+    tried: &[Tried],
+) -> Decision {
+    let tunables = &search.design.tunables;
+    let has_baseline = search.records.iter().any(|record| record.kind == RecordKind::Before);
+    let n = search.design.joints.len();
+    let mut trail = Vec::new();
+    let noisy = noisy_joints(search, &mut trail);
+    let weighed: Vec<Weighed> = (0..found.effects.len())
+        .into_par_iter()
+        .map(|k| weigh(search, none, found, k, tried))
+        .collect();
+    let least = if has_baseline { tunables.least_change } else { tunables.least_share };
+    let everyday: Vec<f64> = (0..n).map(|j| found.fit.everyday(search.design, j)).collect();
+    let left = |fit: &Found, joint: usize| {
+        if has_baseline {
+            fit.fit.changed(search.design, joint)
+        } else {
+            fit.fit.everyday(search.design, joint)
+        }
+    };
+    let mut kept: Vec<Candidate> = Vec::new();
+    let mut decision = Decided::default();
+    for (number, (of, candidate)) in weighed.iter().zip(&found.effects).enumerate() {
+        let mut ask = |gate: Gate, at: String, value: f64, limit: f64| {
+            let entry = gate.of(at, value, limit);
+            let passed = entry.passed;
+            trail.push(entry);
+            passed
+        };
+        let id = of.effect.id;
+        let mut passed = ask(Gate::Evidence, id.to_owned(), of.nats, tunables.least_nats);
+        let limit = LARGEST_CLASS as f64;
+        passed &= ask(Gate::Class, id.to_owned(), of.class.len() as f64, limit);
+        let mut places = Vec::new();
+        for (k, piece) in of.pieces.iter().enumerate() {
+            let joint = piece.fitted.joint;
+            let at = joint.map_or(id.to_owned(), |joint| format!("{id} of joint {}", joint + 1));
+            let left = left(found, joint.unwrap_or(piece.most));
+            // The more any error is beyond a usual one, the less it leaves to judge by.
+            let over = (left / tunables.usual_error)
+                .clamp(tunables.over_everyday, tunables.over_unexplained);
+            let least = least.max(over * left);
+            let confused = beside_confused(search, found, &weighed, [number, k]);
+            let is_quiet = joint.is_none_or(|joint| !noisy.contains(&joint));
+            let mut there = is_quiet
+                & ask(Gate::Size, at.clone(), piece.share, least)
+                & ask(Gate::Bounds, at.clone(), piece.fitted.beyond_bounds(), BEYOND);
+            if let Some(ratio) = confused {
+                there &= ask(Gate::Form, at.clone(), ratio, tunables.of_confused);
+            }
+            if let Some(value) = piece.fitted.over_everyday() {
+                let limit = if has_baseline { CHANGED } else { EVERYDAY };
+                there &= ask(Gate::Everyday, at.clone(), value, limit);
+            }
+            if of.pieces.len() > 1 {
+                there &= ask(Gate::JointEvidence, at, piece.nats, tunables.joint_nats);
+            }
+            if there {
+                places.push(k);
+            }
+        }
+        passed &= !places.is_empty();
+        let all = of.pieces.iter().enumerate();
+        let told = all.filter(|(k, _)| !passed || places.contains(k)).map(|(_, of)| &of.fitted);
+        let finding = of.finding(&told.collect::<Vec<_>>());
+        if passed {
+            let mut candidate = candidate.clone();
+            candidate.pieces = places.iter().map(|k| candidate.pieces[*k].clone()).collect();
+            kept.push(candidate);
+        }
+        // Other values of parameters are no effect, whatever their size.
+        let is_effect = passed && of.effect.nature != Nature::Parameters;
+        let list = if is_effect { &mut decision.effects } else { &mut decision.candidates };
+        list.push(finding);
+    }
+    let has_parameters = kept.iter().any(|of| of.effect.nature == Nature::Parameters);
+    let fit = match kept.len() {
+        0 => None,
+        _ => search.with(none, kept.clone()),
+    };
+    let fit =
+        fit.unwrap_or_else(|| Found { effects: Vec::new(), score: 0.0, fit: none.fit.clone() });
+    let mut remainder = Vec::new();
+    for joint in 0..n {
+        let share = left(&fit, joint);
+        let at = format!("joint {}", joint + 1);
+        let entry = Gate::Unexplained.of(at, share, tunables.usual_error);
+        if !entry.passed || noisy.contains(&joint) {
+            let variable = fit.fit.largest_variable(search.design, joint);
+            let id = variable.map_or("other", |of| of.name());
+            remainder.push(Remainder { id, joint, share });
+        }
+        trail.push(entry);
+    }
+    let Decided { effects, candidates } = decision;
+    let verdict = match (effects.is_empty(), remainder.is_empty()) {
+        (true, true) if has_baseline && !has_parameters => Verdict::NoGap,
+        (true, true) => Verdict::ParametersOnly,
+        (true, false) => Verdict::Unknown,
+        (false, true) => Verdict::Effect,
+        (false, false) => Verdict::Partial,
+    };
+    Decision { verdict, effects, candidates, remainder, trail, asserted: kept, everyday }
+}
+
+impl Weighed {
+    fn finding(&self, fitted: &[&Fitted]) -> Finding {
+        let joints: Vec<usize> = fitted.iter().filter_map(|of| of.joint).collect();
+        Finding {
+            effect: self.effect,
+            joints: if joints.is_empty() { self.few.clone() } else { joints },
+            class: self.class.clone(),
+            probability: self.probability,
+            parameters: parameters(fitted),
+            nats: self.nats,
+            size: self.size,
+        }
+    }
+}
+
+/// Size of a piece beside the largest one at its joint with which it may be confused; negative where it
+/// takes that back; `None` without such a piece.
+fn beside_confused(
+    search: &Search<'_>,
+    found: &Found,
+    weighed: &[Weighed],
+    [number, k]: [usize; 2],
+) -> Option<f64> {
+    let (own, piece) = (&weighed[number], &weighed[number].pieces[k]);
+    let is_confused = |other: &Weighed| {
+        let (a, b) = (own.effect, other.effect);
+        a.id != b.id && (a.confused.contains(&b.id) || b.confused.contains(&a.id))
+    };
+    let there = weighed.iter().filter(|other| is_confused(other)).flat_map(|other| &other.pieces);
+    let there = there.filter(|other| {
+        let (a, b) = (piece.fitted.joint, other.fitted.joint);
+        a.is_none() || b.is_none() || a == b
+    });
+    let largest = there.max_by(|a, b| a.share.total_cmp(&b.share))?;
+    let ratio = piece.share / largest.share.max(f64::MIN_POSITIVE);
+    let members = [piece.member, largest.member].map(|member| member..member + 1);
+    let joint = piece.fitted.joint.or(largest.fitted.joint);
+    let joints = joint.map_or(0..search.design.joints.len(), |joint| joint..joint + 1);
+    let least = joints
+        .map(|joint| found.fit.correlation(search.design, members.clone(), joint))
+        .fold(0.0, f64::min);
+    Some(if least < TAKES_BACK && ratio < 1.0 { -ratio } else { ratio })
+}
+
+/// Parameters of an effect at its joints; with several joints their names end with the joint.
+fn parameters(fitted: &[&Fitted]) -> Vec<Estimated> {
+    let mut all = Vec::new();
+    for of in fitted {
+        let values = of.parameters.iter().zip(&of.deviations);
+        for (parameter, (value, sd)) in of.effect.parameters.iter().zip(values) {
+            let name = match of.joint {
+                Some(joint) if fitted.len() > 1 => format!("{}_j{}", parameter.name, joint + 1),
+                _ => parameter.name.to_owned(),
+            };
+            all.push(Estimated { name, value: *value, sd: *sd, unit: parameter.unit });
+        }
+    }
+    all
+}
+
+/// What the gates ask about an effect of a set.
+fn weigh(
+    search: &Search<'_>,
+    none: &Found,
+    found: &Found,
+    number: usize,
+    tried: &[Tried],
+) -> Weighed {
+    let effect = found.effects[number].effect;
+    let first: usize = found.effects[..number].iter().map(|of| of.pieces.len()).sum();
+    let count = found.effects[number].pieces.len();
+    let score = |less: Option<Found>| less.map_or(0.0, |less| less.score);
+    let without =
+        if found.effects.len() > 1 { score(search.without(none, found, number)) } else { 0.0 };
+    let all = Fitted::of_fit(&found.fit);
+    let n = search.design.joints.len();
+    let share = |members: std::ops::Range<usize>, joint: usize| {
+        found.fit.share(search.design, members, joint)
+    };
+    let largest = |members: std::ops::Range<usize>| {
+        (0..n).map(|joint| share(members.clone(), joint)).fold(0.0, f64::max)
+    };
+    let pieces = (0..count).into_par_iter().map(|k| {
+        let fitted = all[first + k].clone();
+        let members = first + k..first + k + 1;
+        let size = |joint: &usize| share(members.clone(), *joint);
+        let by_size = |a: &usize, b: &usize| size(a).total_cmp(&size(b));
+        let most = fitted.joint.or_else(|| (0..n).max_by(by_size)).unwrap_or(0);
+        let nats = match count {
+            1 => found.score - without,
+            _ => found.score - score(search.without_joint(none, found, number, k)),
+        };
+        WeighedPiece { member: first + k, fitted, most, share: size(&most), nats }
+    });
+    let piece = &found.effects[number].pieces[0];
+    let is_of_few = effect.scope == Scope::Robot && piece.rows.len() <= FEW;
+    let few =
+        if is_of_few { piece.rows.iter().map(|(joint, _)| *joint).collect() } else { Vec::new() };
+    let class = class(search, found, number, tried);
+    Weighed {
+        effect,
+        size: largest(first..first + count),
+        nats: found.score - without,
+        few,
+        probability: calibrated(inclusion(effect.id, tried)),
+        class,
+        pieces: pieces.collect(),
+    }
+}
+
+/// Effects that explain the logs as well in the place of one of a set.
+fn class(search: &Search<'_>, found: &Found, number: usize, tried: &[Tried]) -> Vec<&'static str> {
+    let ids: Vec<&str> = found.effects.iter().map(|of| of.effect.id).collect();
+    let mut class = vec![found.effects[number].effect.id];
+    for of in tried {
+        let is_rest = |id: &&str| *id == ids[number] || of.ids.contains(id);
+        let others: Vec<&'static str> =
+            of.ids.iter().copied().filter(|id| !ids.contains(id)).collect();
+        let near = of.score > found.score - search.design.tunables.class_nats;
+        if let [other] = others[..]
+            && of.ids.len() == ids.len()
+            && ids.iter().all(is_rest)
+            && near
+            && !class.contains(&other)
+        {
+            class.push(other);
+        }
+    }
+    class
+}
+
+/// Posterior probability that an effect is in the set, over all sets that were fitted.
+fn inclusion(id: &str, tried: &[Tried]) -> f64 {
+    let most = tried.iter().map(|of| of.score).fold(f64::NEG_INFINITY, f64::max);
+    let (mut with, mut all) = (0.0, 0.0);
+    for of in tried {
+        let weight = (of.score - most).exp();
+        all += weight;
+        with += if of.ids.contains(&id) { weight } else { 0.0 };
+    }
+    with / f64::max(all, f64::MIN_POSITIVE)
+}
+
+/// Joints whose noise has grown since the baseline.
+fn noisy_joints(search: &Search<'_>, trail: &mut Vec<Entry>) -> Vec<usize> {
+    let tunables = &search.design.tunables;
+    let mut noisy = Vec::new();
+    for of in &search.design.joints {
+        let share = |set: Set| {
+            let cells = of.cells.iter().filter(|cell| cell.set == set);
+            let (noise, power) = cells.fold((0.0, 0.0), |(noise, power), cell| {
+                let count = cell.rows.len() as f64;
+                (noise + cell.noise * count, power + cell.power * count)
+            });
+            f64::sqrt(noise / f64::max(power, f64::MIN_POSITIVE))
+        };
+        let [now, before] = [Set::Now, Set::Baseline].map(share);
+        if before > 0.0 && now > tunables.least_share {
+            let at = format!("joint {}", of.joint + 1);
+            let entry = Gate::Noise.of(at, now / before, tunables.noise_ratio);
+            if !entry.passed {
+                noisy.push(of.joint);
+            }
+            trail.push(entry);
+        }
+    }
+    noisy
+}
+
+/// Whether a parameter may be named at all under a trust.
+#[must_use]
+pub(in crate::gap) fn may_name_parameters(trust: Trust) -> bool {
+    trust != Trust::Unknown
+}

@@ -1,0 +1,470 @@
+//! The search for the most probable set of effects.
+
+use crate::arm::effects::{Acts, Effect, Nature, Scope, Subject};
+use rayon::prelude::*;
+
+use super::shape::{lowest, moves, refined};
+use super::window::Windows;
+use crate::gap::data::Record;
+use crate::gap::design::{Design, Group, PieceRows, link_pieces, piece_rows};
+use crate::gap::model::Fitted;
+use crate::gap::posterior::{
+    Fit, Gains, Hypothesis, Member, Sizes, Start, fitted, fitted_as_written, usual,
+};
+
+/// Families that are fitted in full in each round.
+const FULL: usize = 6;
+/// Effects that are found together at most.
+const MOST: usize = 3;
+/// Steps of the sizes, least and most: of a first fit, of a first look at a set, of a fit with a set.
+const FIRST: [usize; 2] = [10, 40];
+const LOOK: [usize; 2] = [3, 12];
+const STEPS: [usize; 2] = [6, 24];
+/// A fit at given sizes.
+const NO_STEPS: [usize; 2] = [0, 0];
+/// Deviations by which a parameter may be beyond what is possible.
+pub(super) const BEYOND: f64 = 2.0;
+/// Spread of everyday errors beyond the largest usual one \[ln\].
+const TAIL: f64 = 0.2;
+/// Times that shapes are looked for beside what they bring along.
+const ROUNDS: usize = 2;
+/// Sets whose shapes are refined in each round.
+const REFINED: usize = 4;
+
+/// Pieces of one effect.
+#[derive(Clone)]
+pub(in crate::gap) struct Candidate {
+    /// The effect.
+    pub effect: &'static Effect,
+    /// Its pieces.
+    pub pieces: Vec<PieceRows>,
+    /// Prior cost \[nats\].
+    pub cost: f64,
+}
+
+impl Candidate {
+    /// Whether another one has the same pieces.
+    fn is_same(&self, other: &Candidate) -> bool {
+        let mut pieces = self.pieces.iter().zip(&other.pieces);
+        self.effect.id == other.effect.id
+            && self.pieces.len() == other.pieces.len()
+            && pieces.all(|(a, b)| a.joint == b.joint && a.shape == b.shape)
+    }
+}
+
+/// A set of effects.
+#[derive(Clone)]
+pub(in crate::gap) struct Found {
+    /// The effects.
+    pub effects: Vec<Candidate>,
+    /// The fit with them.
+    pub fit: Fit,
+    /// Logarithm of the odds against no effect.
+    pub score: f64,
+}
+
+impl Found {
+    fn tried(&self) -> Tried {
+        Tried { ids: self.effects.iter().map(|of| of.effect.id).collect(), score: self.score }
+    }
+}
+
+/// A set that was fitted: ids of its effects, and the logarithm of the odds against no effect.
+pub(in crate::gap) struct Tried {
+    /// Ids.
+    pub ids: Vec<&'static str>,
+    /// Odds \[nats\].
+    pub score: f64,
+}
+
+/// A search.
+pub(in crate::gap) struct Search<'a> {
+    /// Records.
+    pub records: &'a [Record<'a>],
+    /// Design.
+    pub design: &'a Design,
+    /// Pieces that may be found.
+    pieces: Vec<PieceRows>,
+    /// Effects that act in windows.
+    windows: Vec<Windows>,
+}
+
+impl<'a> Search<'a> {
+    /// A search for effects.
+    #[must_use]
+    pub(in crate::gap) fn new(
+        records: &'a [Record<'a>],
+        design: &'a Design,
+        effects: &[&'static Effect],
+    ) -> Search<'a> {
+        let mut pieces = piece_rows(design, records, effects);
+        let parameters = effects
+            .iter()
+            .find(|of| of.nature == Nature::Parameters && of.subject == Subject::Body);
+        pieces.extend(parameters.into_iter().flat_map(|of| link_pieces(design, of)));
+        let n = design.joints.len();
+        let windows = effects.iter().filter(|of| of.acts == Acts::InWindow).flat_map(|of| {
+            let count = if of.scope == Scope::Robot { 1 } else { n };
+            (0..count).filter_map(|joint| Windows::new(design, records, of, joint))
+        });
+        Search { records, design, pieces, windows: windows.collect() }
+    }
+}
+
+impl Search<'_> {
+    /// The fit without effects.
+    #[must_use]
+    pub(in crate::gap) fn none_of(design: &Design) -> Option<Found> {
+        let fit = fitted(design, Hypothesis::default(), Start::at(usual(design)), FIRST)?;
+        Some(Found { effects: Vec::new(), score: 0.0, fit })
+    }
+
+    /// For each effect that is not in the set, its best joints and shapes beside it.
+    #[must_use]
+    fn candidates(
+        &self,
+        pieces: &[PieceRows],
+        gains: &[[f64; 2]],
+        set: &[Candidate],
+    ) -> Vec<(f64, Candidate)> {
+        let mut all: Vec<(f64, Candidate)> = Vec::new();
+        let mut ids: Vec<&'static str> = Vec::new();
+        for piece in pieces {
+            if !ids.contains(&piece.effect.id) {
+                ids.push(piece.effect.id);
+            }
+        }
+        for id in ids.into_iter().filter(|id| set.iter().all(|of| of.effect.id != *id)) {
+            // By joint: the gain less the cost, the cost, the piece.
+            let mut best: Vec<(Option<usize>, [f64; 2], &PieceRows)> = Vec::new();
+            let brought = |piece: &PieceRows| {
+                let of_joint = |other: &PieceRows| {
+                    other.joint == piece.joint && other.effect.brings.contains(&id)
+                };
+                set.iter().flat_map(|of| &of.pieces).any(of_joint)
+            };
+            for (piece, [gain, of_brought]) in
+                pieces.iter().zip(gains).filter(|(p, _)| p.effect.id == id)
+            {
+                if brought(piece) {
+                    continue;
+                }
+                let cost = self.cost_of(piece) + of_brought;
+                let net = gain - cost;
+                match best.iter_mut().find(|(joint, ..)| *joint == piece.joint) {
+                    Some(known) if net > known.1[0] => (known.1, known.2) = ([net, cost], piece),
+                    Some(_) => {}
+                    None => best.push((piece.joint, [net, cost], piece)),
+                }
+            }
+            best.sort_by(|a, b| b.1[0].total_cmp(&a.1[0]));
+            let wanted = |(k, of): &(usize, &(Option<usize>, [f64; 2], &PieceRows))| {
+                *k == 0 || of.1[0] > 0.0
+            };
+            let chosen: Vec<_> = best.iter().enumerate().filter(wanted).map(|(_, of)| of).collect();
+            let Some(first) = chosen.first() else { continue };
+            let effect_cost = self.design.tunables.effect_cost;
+            let score = chosen.iter().map(|of| of.1[0]).sum::<f64>() - effect_cost;
+            let cost = effect_cost + chosen.iter().map(|of| of.1[1]).sum::<f64>();
+            let pieces = chosen.iter().map(|of| of.2.clone()).collect();
+            all.push((score, Candidate { effect: first.2.effect, pieces, cost }));
+        }
+        all.sort_by(|a, b| b.0.total_cmp(&a.0));
+        all
+    }
+
+    /// The fit with a set of effects.
+    #[must_use]
+    pub(in crate::gap) fn with(&self, none: &Found, effects: Vec<Candidate>) -> Option<Found> {
+        self.fit([none, none], effects, STEPS)
+    }
+
+    /// The fit with a set of effects near another one, with so many steps of the sizes.
+    fn fit(
+        &self,
+        [none, near]: [&Found; 2],
+        effects: Vec<Candidate>,
+        steps: [usize; 2],
+    ) -> Option<Found> {
+        let pieces = effects.iter().flat_map(|of| of.pieces.iter().cloned());
+        let members = pieces.map(|piece| Member::new(self.design, self.records, piece)).collect();
+        let hypothesis = Hypothesis { members };
+        let start = Start::near(self.design, &hypothesis, [none.fit.known(), near.fit.known()]);
+        let fit = fitted(self.design, hypothesis, start, steps)?;
+        let cost: f64 = effects.iter().map(|of| of.cost).sum();
+        let score = fit.log_evidence - none.fit.log_evidence - cost - self.beyond_usual(&fit)
+            + self.beyond_usual(&none.fit);
+        Some(Found { effects, fit, score })
+    }
+
+    /// What everyday errors cost that are larger than any robot's \[nats\].
+    fn beyond_usual(&self, fit: &Fit) -> f64 {
+        let joints = 0..self.design.joints.len();
+        let over = joints.map(|joint| {
+            let share = fit.everyday(self.design, joint) / self.design.tunables.usual_error;
+            0.5 * (share.ln().max(0.0) / TAIL).powi(2)
+        });
+        over.sum()
+    }
+
+    /// The best set: effects are added while the evidence grows, then joints and effects that became
+    /// needless are taken out; with all sets that were fitted.
+    #[must_use]
+    pub(in crate::gap) fn best(&self, none: Found) -> (Found, Found, Vec<Tried>) {
+        let least = self.design.tunables.least_nats;
+        let mut tried = vec![Tried { ids: Vec::new(), score: 0.0 }];
+        let mut best: Option<Found> = None;
+        for _ in 0..MOST {
+            let next = self.next(&none, best.as_ref().unwrap_or(&none));
+            tried.extend(next.iter().map(Found::tried));
+            let before = best.as_ref().map_or(0.0, |best| best.score);
+            match next.into_iter().next() {
+                Some(first) if first.score > before + least => best = Some(first),
+                _ => break,
+            }
+        }
+        let best = match best {
+            Some(best) => self.pruned(&none, best),
+            None => none.clone(),
+        };
+        tried.push(best.tried());
+        (none, best, tried)
+    }
+
+    /// The set without effects and joints that hardly matter.
+    fn pruned(&self, none: &Found, mut found: Found) -> Found {
+        let tunables = &self.design.tunables;
+        let mut e = 0;
+        while e < found.effects.len() {
+            let less = (found.effects.len() > 1).then(|| self.without(none, &found, e)).flatten();
+            if let Some(less) = less.filter(|less| less.score > found.score - tunables.least_nats) {
+                found = less;
+                continue;
+            }
+            let mut k = 0;
+            while k < found.effects[e].pieces.len() && found.effects[e].pieces.len() > 1 {
+                match self.without_joint(none, &found, e, k) {
+                    Some(less) if less.score > found.score - tunables.joint_nats => found = less,
+                    _ => k += 1,
+                }
+            }
+            e += 1;
+        }
+        found
+    }
+
+    /// The set without an effect, or without its pieces at some joints.
+    #[must_use]
+    pub(in crate::gap) fn without_id(
+        &self,
+        none: &Found,
+        found: &Found,
+        (id, joints): (&str, &[usize]),
+    ) -> Option<Found> {
+        let mut effects = found.effects.clone();
+        for of in effects.iter_mut().filter(|of| of.effect.id == id) {
+            let goes = |piece: &PieceRows| {
+                joints.is_empty() || piece.joint.is_some_and(|joint| joints.contains(&joint))
+            };
+            let gone: f64 = of.pieces.iter().filter(|of| goes(of)).map(|of| self.cost_of(of)).sum();
+            of.pieces.retain(|piece| !goes(piece));
+            of.cost -= gone;
+        }
+        effects.retain(|of| !of.pieces.is_empty());
+        if effects.is_empty() {
+            Some(none.clone())
+        } else {
+            self.fit([none, found], effects, STEPS)
+        }
+    }
+
+    /// The set without one of its effects.
+    #[must_use]
+    pub(in crate::gap) fn without(
+        &self,
+        none: &Found,
+        found: &Found,
+        effect: usize,
+    ) -> Option<Found> {
+        let mut effects = found.effects.clone();
+        effects.remove(effect);
+        self.fit([none, found], effects, STEPS)
+    }
+
+    /// The set without one piece of one of its effects.
+    #[must_use]
+    pub(in crate::gap) fn without_joint(
+        &self,
+        none: &Found,
+        found: &Found,
+        effect: usize,
+        piece: usize,
+    ) -> Option<Found> {
+        let mut effects = found.effects.clone();
+        let gone = effects[effect].pieces.remove(piece);
+        effects[effect].cost -= self.cost_of(&gone);
+        self.fit([none, found], effects, STEPS)
+    }
+
+    /// The best sets with one effect more than `found`, best first.
+    #[must_use]
+    fn next(&self, none: &Found, found: &Found) -> Vec<Found> {
+        let at_usual = Start::at(usual(self.design));
+        let plain = fitted(self.design, found.fit.hypothesis.clone(), at_usual, NO_STEPS);
+        let mut wanted: Vec<Candidate> = Vec::new();
+        for fit in std::iter::once(&found.fit).chain(plain.iter()) {
+            let all = Gains::new(self.design, fit);
+            let more: Vec<PieceRows> = self
+                .windows
+                .par_iter()
+                .flat_map_iter(|of| of.best(self.records, self.design, &all))
+                .collect();
+            let mut gains = all.of_all(&self.pieces, f64::INFINITY);
+            gains.extend(all.of_all(&more, f64::INFINITY));
+            let pieces: Vec<PieceRows> = self.pieces.iter().cloned().chain(more).collect();
+            let mut best = self.candidates(&pieces, &gains, &found.effects);
+            best.truncate(FULL);
+            let best: Vec<Candidate> =
+                best.into_par_iter().map(|(_, candidate)| self.shaped(&all, candidate)).collect();
+            for candidate in best {
+                if !wanted.iter().any(|of| of.is_same(&candidate)) {
+                    wanted.push(candidate);
+                }
+            }
+        }
+        let mut all: Vec<Found> = wanted
+            .into_par_iter()
+            .filter_map(|candidate| {
+                let mut effects = found.effects.clone();
+                effects.push(candidate);
+                self.possible([none, found], self.fit([none, found], effects, LOOK)?)
+            })
+            .collect();
+        all.sort_by(|a, b| b.score.total_cmp(&a.score));
+
+        let rest = all.split_off(all.len().min(REFINED));
+        let mut all: Vec<Found> =
+            all.into_par_iter().map(|of| self.refined(none, found, of)).chain(rest).collect();
+        all.sort_by(|a, b| b.score.total_cmp(&a.score));
+        all
+    }
+
+    /// A piece with the best shape beside a fit.
+    fn best_shape(&self, gains: &Gains<'_>, piece: &PieceRows) -> PieceRows {
+        let moves = moves(piece.effect, self.records, piece);
+        let (design, records) = (self.design, self.records);
+        let reshape = |of: &PieceRows, shape: &[f64]| of.reshaped(design, records, shape, false);
+        let best = refined(gains, piece, &moves, lowest(records), &reshape);
+        if best.shape == piece.shape {
+            piece.clone()
+        } else {
+            piece.reshaped(design, records, &best.shape, true)
+        }
+    }
+
+    /// A candidate whose pieces that act by themselves, which explain nothing with a wrong shape, have
+    /// their best ones; those that explain nothing even so go.
+    fn shaped(&self, gains: &Gains<'_>, mut candidate: Candidate) -> Candidate {
+        let pieces = std::mem::take(&mut candidate.pieces);
+        for piece in pieces {
+            if !piece.is_fixed() {
+                candidate.pieces.push(piece);
+                continue;
+            }
+            let best = self.best_shape(gains, &piece);
+            if candidate.pieces.is_empty() || gains.of(&best, f64::INFINITY) > self.cost_of(&best) {
+                candidate.pieces.push(best);
+            } else {
+                candidate.cost -= self.cost_of(&piece);
+            }
+        }
+        candidate
+    }
+
+    /// The set without pieces of its last effect whose parameters cannot be; `None` where none is left.
+    fn possible(&self, known: [&Found; 2], of: Found) -> Option<Found> {
+        let mut effects = of.effects.clone();
+        let last = effects.last_mut()?;
+        let fitted = Fitted::of_fit(&of.fit);
+        let first = fitted.len() - last.pieces.len();
+        let is_possible = |k: usize| fitted[first + k].beyond_bounds() <= BEYOND;
+        let kept: Vec<usize> = (0..last.pieces.len()).filter(|k| is_possible(*k)).collect();
+        if kept.len() == last.pieces.len() {
+            return Some(of);
+        }
+        for (k, gone) in last.pieces.iter().enumerate() {
+            last.cost -= if kept.contains(&k) { 0.0 } else { self.cost_of(gone) };
+        }
+        last.pieces = kept.iter().map(|k| last.pieces[*k].clone()).collect();
+        if last.pieces.is_empty() { None } else { self.fit(known, effects, LOOK) }
+    }
+
+    /// Prior cost of a piece \[nats\].
+    fn cost_of(&self, piece: &PieceRows) -> f64 {
+        self.design.tunables.joint_cost + (piece.choices.max(1) as f64).ln()
+    }
+
+    /// Effects with the shapes that are best where neither everyday errors nor other forms of the laws
+    /// are there to help.
+    #[must_use]
+    pub(in crate::gap) fn shaped_as_written(&self, effects: &[Candidate]) -> Vec<Candidate> {
+        let pieces = |all: &[Candidate], but: Option<usize>| -> Vec<PieceRows> {
+            let kept = all.iter().enumerate().filter(|(k, _)| Some(*k) != but);
+            kept.flat_map(|(_, of)| of.pieces.iter().cloned()).collect()
+        };
+        let fit = |pieces: Vec<PieceRows>, near: Option<&Fit>| {
+            fitted_as_written(self.design, self.records, pieces, near)
+        };
+        let has_moves = |piece: &PieceRows| !moves(piece.effect, self.records, piece).is_empty();
+        let Some(model) = self.records.first().map(|of| of.motion.model) else { return Vec::new() };
+        let mut all = effects.to_vec();
+        for k in 0..all.len() {
+            let first = all[..k].iter().map(|of| of.pieces.len()).sum();
+            if !all[k].pieces.iter().any(has_moves) {
+                continue;
+            }
+            for _ in 0..ROUNDS {
+                let Some(with) = fit(pieces(&all, None), None) else { break };
+                let Some(without) = fit(pieces(&all, Some(k)), Some(&with)) else { break };
+                let gains = Gains::new(self.design, &without);
+                for piece in &mut all[k].pieces {
+                    *piece = self.best_shape(&gains, piece).without_tangents();
+                }
+                let Some(with) = fit(pieces(&all, None), Some(&with)) else { break };
+                if !with.bound(all[k].pieces.iter_mut(), first, model) {
+                    break;
+                }
+            }
+        }
+        all
+    }
+
+    /// The same set with the best shapes of its last effect, fitted in full.
+    fn refined(&self, none: &Found, found: &Found, of: Found) -> Found {
+        let Some(last) = of.effects.last() else { return of };
+        let sizes = Start::at(without_forms(&of, found));
+        let without = fitted(self.design, found.fit.hypothesis.clone(), sizes, NO_STEPS);
+        let Some(without) = without else { return of };
+        let gains = Gains::new(self.design, &without);
+        let pieces: Vec<PieceRows> =
+            last.pieces.iter().map(|piece| self.best_shape(&gains, piece)).collect();
+        let mut effects = of.effects.clone();
+        if let Some(last) = effects.last_mut() {
+            last.pieces = pieces;
+        }
+        match self.fit([none, found], effects, STEPS) {
+            Some(better) if better.score > of.score => better,
+            _ => self.fit([none, found], of.effects.clone(), STEPS).unwrap_or(of),
+        }
+    }
+}
+
+/// The sizes of a set without the forms of the effects that it has more than another one.
+fn without_forms(of: &Found, than: &Found) -> Sizes {
+    let count = than.fit.hypothesis.members.len();
+    let mut sizes = of.fit.sizes.clone();
+    for joint in &mut sizes {
+        joint.groups.retain(|(group, _)| !matches!(group, Group::Form(k) if *k >= count));
+    }
+    sizes
+}

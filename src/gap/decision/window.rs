@@ -1,0 +1,116 @@
+//! Effects that act for a part of each repetition, or of a log.
+//!
+//! What acts in a window is the sum of what acts in its parts. Where windows begin and end is looked for
+//! at low frequencies, too: they see no single row.
+
+use super::shape::{Move, lowest, refined};
+use crate::arm::effects::Effect;
+use crate::gap::data::Record;
+use crate::gap::design::{Design, PieceRows, Times, Whole};
+use crate::gap::posterior::Gains;
+
+/// Parts of a repetition at which windows begin and end, and their lengths in parts.
+const PARTS: usize = 20;
+const LENGTHS: [usize; 5] = [1, 2, 3, 5, 8];
+/// Windows from which the best one is looked for.
+const STARTS: usize = 2;
+/// Least gain of a window that is looked at further \[nats\].
+const LEAST: f64 = 4.0;
+
+/// An effect that acts in windows, at a joint.
+pub(super) struct Windows {
+    whole: Whole,
+    /// Duration of a part \[s\].
+    part: f64,
+    times: Times,
+    /// What acts in each part.
+    parts: PieceRows,
+}
+
+impl Windows {
+    /// Windows of an effect.
+    pub(super) fn new(
+        design: &Design,
+        records: &[Record<'_>],
+        effect: &'static Effect,
+        joint: usize,
+    ) -> Option<Windows> {
+        let first = records.first()?;
+        let whole = Whole::new(records, effect, joint)?;
+        let closed = first.motion.closed;
+        let [begins, ends] = if closed { [0.0, first.duration()] } else { range(records) };
+        let part = (ends - begins) / PARTS as f64;
+        let period = if closed { ends } else { 0.0 };
+        let times = Times { begins, period, choices: PARTS * LENGTHS.len() };
+        let parts = whole.parts(design, records, (part, PARTS), &times);
+        Some(Windows { whole, part, times, parts })
+    }
+
+    /// The best windows beside a fit.
+    pub(super) fn best(
+        &self,
+        records: &[Record<'_>],
+        design: &Design,
+        gains: &Gains<'_>,
+    ) -> Vec<PieceRows> {
+        let limits = [lowest(records), f64::INFINITY];
+        let mut best: Vec<PieceRows> = Vec::new();
+        for below in limits {
+            for window in self.starts(gains, below) {
+                let within = |shape: &[f64]| {
+                    let mut shape = shape.to_vec();
+                    let n = shape.len();
+                    shape[n - 2] = shape[n - 2].max(shape[n - 3]);
+                    if let Some((k, most)) = self.whole.rise() {
+                        shape[k] = shape[k].clamp(0.0, most);
+                    }
+                    self.whole.within(design, records, shape, &self.times)
+                };
+                let piece = within(&self.whole.shape(window, &self.times));
+                let n = piece.shape.len();
+                let by = |coordinate, step| Move { coordinate, step, is_factor: false };
+                let mut moves = vec![by(n - 3, 0.5 * self.part), by(n - 2, 0.5 * self.part)];
+                let climb = |from: &PieceRows, moves: &[Move]| {
+                    refined(gains, from, moves, lowest(records), &|_, shape| within(shape))
+                };
+                let at_once = climb(&piece, &moves);
+                if let Some((k, most)) = self.whole.rise() {
+                    moves.push(by(k, 0.5 * most));
+                    best.push(climb(&at_once, &moves));
+                }
+                best.push(at_once);
+            }
+        }
+        best
+    }
+
+    /// Windows that begin and end with parts and explain most, apart from each other.
+    fn starts(&self, gains: &Gains<'_>, below: f64) -> Vec<[f64; 2]> {
+        let windows: Vec<[usize; 2]> = LENGTHS
+            .iter()
+            .flat_map(|length| (0..PARTS).map(move |begin| [begin, begin + length]))
+            .filter(|[_, end]| self.times.period > 0.0 || *end <= PARTS)
+            .collect();
+        let of_windows = gains.of_sums(&self.parts, PARTS, &windows, below);
+        let mut all: Vec<(f64, [usize; 2])> = of_windows.into_iter().zip(windows).collect();
+        all.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let least = LEAST + (self.times.choices as f64).ln();
+        let mut best: Vec<[usize; 2]> = Vec::new();
+        for (_, [a, b]) in all.into_iter().take_while(|(gain, _)| *gain > least) {
+            let is_apart =
+                |[c, d]: &[usize; 2]| 2 * b.min(*d).saturating_sub(a.max(*c)) <= (b - a).min(d - c);
+            if best.len() < STARTS && best.iter().all(is_apart) {
+                best.push([a, b]);
+            }
+        }
+        best.into_iter()
+            .map(|window| window.map(|k| self.times.begins + self.part * k as f64))
+            .collect()
+    }
+}
+
+/// The first and the last time of records \[s\].
+fn range(records: &[Record<'_>]) -> [f64; 2] {
+    let times = || records.iter().flat_map(|record| &record.motion.t).copied();
+    [times().fold(f64::INFINITY, f64::min), times().fold(f64::NEG_INFINITY, f64::max)]
+}
