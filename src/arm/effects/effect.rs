@@ -238,6 +238,8 @@ pub struct Effect {
     pub brings: &'static [&'static str],
     /// Ids of effects with similar torques.
     pub confused: &'static [&'static str],
+    /// What to inspect where it is found.
+    pub inspect: &'static str,
     /// An experiment that separates it from those: options of `joulepath excite`, and the reason.
     pub experiment: [&'static str; 2],
     /// Its implementation.

@@ -2,7 +2,6 @@
 
 use rayon::prelude::*;
 
-use super::calibration::calibrated;
 use super::finding::{Estimated, Finding, Remainder, Verdict};
 use super::search::{BEYOND, Candidate, Found, Search, Tried};
 use super::trail::{Entry, Gate};
@@ -52,7 +51,7 @@ struct Weighed {
     /// Joints that an effect of the robot reaches, where it reaches but few.
     few: Vec<usize>,
     class: Vec<&'static str>,
-    probability: f64,
+    inclusion: f64,
 }
 
 /// An effect at a joint.
@@ -193,7 +192,7 @@ impl Weighed {
             effect: self.effect,
             joints: if joints.is_empty() { self.few.clone() } else { joints },
             class: self.class.clone(),
-            probability: self.probability,
+            inclusion: self.inclusion,
             parameters: parameters(fitted),
             nats: self.nats,
             size: self.size,
@@ -290,7 +289,7 @@ fn weigh(
         size: largest(first..first + count),
         nats: found.score - without,
         few,
-        probability: calibrated(inclusion(effect.id, tried)),
+        inclusion: inclusion(effect.id, tried),
         class,
         pieces: pieces.collect(),
     }

@@ -8,8 +8,9 @@ mod shape;
 mod trail;
 mod window;
 
-pub(super) use calibration::asserted;
+pub use calibration::Calibration;
+pub(super) use calibration::of_odds;
 pub(in crate::gap) use decide::{Decision, decide, may_name_parameters};
 pub use finding::{Estimated, Finding, Place, Remainder, Verdict};
-pub(in crate::gap) use search::{Candidate, Found, Search, Tried};
+pub(in crate::gap) use search::{Candidate, Found, Search, Searched, Tried};
 pub use trail::{Entry, Gate};

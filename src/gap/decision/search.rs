@@ -77,6 +77,18 @@ pub(in crate::gap) struct Tried {
     pub score: f64,
 }
 
+/// What a search found.
+pub(in crate::gap) struct Searched {
+    /// The fit without effects.
+    pub none: Found,
+    /// The best set.
+    pub best: Found,
+    /// All sets that were fitted.
+    pub tried: Vec<Tried>,
+    /// The best ones of each size.
+    pub near: Vec<Found>,
+}
+
 /// A search.
 pub(in crate::gap) struct Search<'a> {
     /// Records.
@@ -210,17 +222,21 @@ impl Search<'_> {
     /// The best set: effects are added while the evidence grows, then joints and effects that became
     /// needless are taken out; with all sets that were fitted.
     #[must_use]
-    pub(in crate::gap) fn best(&self, none: Found) -> (Found, Found, Vec<Tried>) {
+    pub(in crate::gap) fn best(&self, none: Found) -> Searched {
         let least = self.design.tunables.least_nats;
-        let mut tried = vec![Tried { ids: Vec::new(), score: 0.0 }];
+        let mut tried = vec![none.tried()];
+        let mut near: Vec<Found> = Vec::new();
         let mut best: Option<Found> = None;
         for _ in 0..MOST {
-            let next = self.next(&none, best.as_ref().unwrap_or(&none));
+            let mut next = self.next(&none, best.as_ref().unwrap_or(&none));
             tried.extend(next.iter().map(Found::tried));
             let before = best.as_ref().map_or(0.0, |best| best.score);
-            match next.into_iter().next() {
-                Some(first) if first.score > before + least => best = Some(first),
-                _ => break,
+            let first = next.first().filter(|first| first.score > before + least).cloned();
+            next.truncate(REFINED);
+            near.append(&mut next);
+            match first {
+                Some(first) => best = Some(first),
+                None => break,
             }
         }
         let best = match best {
@@ -228,7 +244,7 @@ impl Search<'_> {
             None => none.clone(),
         };
         tried.push(best.tried());
-        (none, best, tried)
+        Searched { none, best, tried, near }
     }
 
     /// The set without effects and joints that hardly matter.

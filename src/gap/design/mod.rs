@@ -12,6 +12,7 @@ mod joint;
 mod packed;
 mod parameters;
 mod piece;
+mod planned;
 mod problem;
 mod set;
 

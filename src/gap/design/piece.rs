@@ -207,14 +207,30 @@ pub(in crate::gap) fn piece_rows(
         .flat_map_iter(|(effect, joint)| {
             let own = pieces(effect, records, joint).into_iter();
             let own: Vec<_> = own.map(|of| to_rows(design, records, effect, of)).collect();
-            let mut reached: Vec<usize> =
-                own.iter().flat_map(|of| of.rows.iter().map(|(joint, _)| *joint)).collect();
-            reached.sort_unstable();
-            reached.dedup();
-            let brought = brought_rows(design, records, effect, (joint, &reached));
+            let brought = brought_rows(design, records, effect, (joint, &reached(&own)));
             own.into_iter().map(|of| of.with_brought(&brought)).collect::<Vec<_>>()
         })
         .collect()
+}
+
+/// A piece in other records, with what it brings along there.
+pub(super) fn piece_at(design: &Design, records: &[Record<'_>], of: &PieceRows) -> PieceRows {
+    let joint = of.joint.unwrap_or(0);
+    let columns = columns_at(of.effect, records, joint, &of.shape, true);
+    let piece = Piece { joint: of.joint, shape: of.shape.clone(), choices: of.choices, columns };
+    let own = to_rows(design, records, of.effect, piece);
+    let reached = reached(std::slice::from_ref(&own));
+    let brought = brought_rows(design, records, of.effect, (joint, &reached));
+    own.with_brought(&brought)
+}
+
+/// Joints that pieces reach.
+fn reached(pieces: &[PieceRows]) -> Vec<usize> {
+    let mut all: Vec<usize> =
+        pieces.iter().flat_map(|of| of.rows.iter().map(|(joint, _)| *joint)).collect();
+    all.sort_unstable();
+    all.dedup();
+    all
 }
 
 /// Pieces of the parameters of each link.

@@ -84,7 +84,9 @@ impl<'a> Gains<'a> {
             if count == 0 || rows == 0 {
                 continue;
             }
-            let mut columns = DMatrix::zeros(rows, count);
+            // Products of narrow matrices are slow: empty columns make it a wide one.
+            let width = count.max(WIDE);
+            let mut columns = DMatrix::zeros(rows, width);
             let from = reached.iter().flat_map(|(_, rows)| rows.column_iter());
             for (mut to, from) in columns.column_iter_mut().zip(from) {
                 to.copy_from(&from.rows(0, rows));
@@ -93,9 +95,9 @@ impl<'a> Gains<'a> {
             let reduced = &self.fit.reduced[joint];
             let with_base = of.transposed.columns(0, rows) * &columns;
             let (h, everyday, f) = (extra.effects, of.groups.len(), extra.forms.len());
-            let mut with_local = DMatrix::zeros(everyday + f, count);
+            let mut with_local = DMatrix::zeros(everyday + f, width);
             with_local.rows_mut(0, everyday).copy_from(&with_base.rows(parameters, everyday));
-            let mut with_global = DMatrix::zeros(m, count);
+            let mut with_global = DMatrix::zeros(m, width);
             with_global.rows_mut(0, parameters).copy_from(&with_base.rows(0, parameters));
             if h + f > 0 {
                 let with_extra = extra.transposed.columns(0, rows) * &columns;
@@ -129,6 +131,14 @@ impl<'a> Gains<'a> {
         let products = self.products(&[piece], below);
         let spread = self.design.tunables.amplitude_spread;
         products.first().map_or(f64::NEG_INFINITY, |of| best(of, &piece.prior, spread))
+    }
+
+    /// Squares of what is added by the first column of pieces, in deviations, everything of the fit
+    /// marginalised.
+    #[must_use]
+    pub(in crate::gap) fn squares(&self, pieces: &[PieceRows]) -> Vec<f64> {
+        let all: Vec<&PieceRows> = pieces.iter().collect();
+        self.products(&all, f64::INFINITY).iter().map(|(a, _)| a[(0, 0)]).collect()
     }
 
     /// Gains of sums of the parts `from..to` of a piece whose columns are those of `count` parts, one
@@ -170,6 +180,8 @@ impl<'a> Gains<'a> {
     }
 }
 
+/// Columns from which on nalgebra multiplies in blocks.
+const WIDE: usize = 6;
 /// Pieces whose products are computed together.
 const TOGETHER: usize = 64;
 

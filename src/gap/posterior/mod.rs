@@ -6,6 +6,7 @@
 //! groups of everyday errors maximise the marginal likelihood times their prior (empirical Bayes;
 //! D. `MacKay`, Bayesian interpolation, Neural Computation 4, 1992).
 
+mod blocked;
 mod evidence;
 mod fit;
 mod gain;

@@ -1,6 +1,7 @@
 //! Where the search for sizes begins.
 
 use super::hypothesis::{Hypothesis, Member};
+use super::reduced::Reduced;
 use super::sizes::{Size, Sizes, usual};
 use crate::gap::design::Design;
 
@@ -10,6 +11,7 @@ pub(in crate::gap) struct Known<'a> {
     pub(super) hypothesis: &'a Hypothesis,
     pub(super) sizes: &'a Sizes,
     pub(super) amplitudes: &'a [Size],
+    pub(super) reduced: &'a [Reduced],
 }
 
 /// The sizes from which a fit begins.
@@ -20,6 +22,8 @@ pub(in crate::gap) struct Start {
     pub(super) amplitudes: Vec<f64>,
     /// Joints whose sizes are looked for.
     pub(super) is_open: Vec<bool>,
+    /// Products of the joints that the hypothesis does not reach, where they are known.
+    pub(super) reduced: Vec<Option<Reduced>>,
 }
 
 impl Start {
@@ -27,7 +31,8 @@ impl Start {
     #[must_use]
     pub(in crate::gap) fn at(sizes: Sizes) -> Start {
         let is_open = vec![true; sizes.len()];
-        Start { sizes, amplitudes: Vec::new(), is_open }
+        let reduced = vec![None; sizes.len()];
+        Start { sizes, amplitudes: Vec::new(), is_open, reduced }
     }
 
     /// Near known fits: joints that a hypothesis reaches as one of these does keep the sizes of that.
@@ -40,6 +45,9 @@ impl Start {
             if let Some(fit) = same {
                 start.sizes[joint] = fit.sizes[joint].clone();
                 start.is_open[joint] = false;
+                let parameters = design.parameters.count();
+                start.reduced[joint] = (!of.reaches(joint))
+                    .then(|| fit.reduced[joint].beside(1 + parameters, of.columns()));
             }
         }
         let [_, near] = known;

@@ -1,5 +1,6 @@
 //! `joulepath blind`: the sealed examination of `diagnose`.
 
+mod calibrate;
 mod cases;
 mod family;
 mod inject;
@@ -38,6 +39,7 @@ enum BlindCommand {
     Generate(GenerateArgs),
     Inject(inject::InjectArgs),
     Grade(GradeArgs),
+    Calibrate(calibrate::CalibrateArgs),
     Sensitivity(sensitivity::SensitivityArgs),
 }
 
@@ -122,6 +124,7 @@ pub(super) fn run(args: &BlindArgs) -> anyhow::Result<ExitCode> {
         BlindCommand::Generate(args) => generate(args),
         BlindCommand::Inject(args) => inject::run(args),
         BlindCommand::Grade(args) => grade(args),
+        BlindCommand::Calibrate(args) => calibrate::run(args),
         BlindCommand::Sensitivity(args) => sensitivity::run(args),
     }
 }
@@ -185,9 +188,7 @@ fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {
         };
         let path = beside.join(&label.case).join(&name);
         diagnoses.push(if path.exists() {
-            let shown = path.display();
-            serde_json::from_str(&read(&path)?)
-                .with_context(|| format!("'{shown}' is no JSON; write it again with diagnose"))?
+            known_diagnosis(&path)?
         } else {
             diagnosis_of_case(&args.cases.join(&label.case), &name, &without)?
         });
@@ -209,6 +210,12 @@ fn without<'a>(label: &'a Label, left_out: Option<&'a str>) -> Vec<&'a str> {
         Some(id) => vec![id],
         None => Vec::new(),
     }
+}
+
+fn known_diagnosis(path: &Path) -> anyhow::Result<Value> {
+    let shown = path.display();
+    serde_json::from_str(&read(path)?)
+        .with_context(|| format!("'{shown}' is no JSON; write it again with diagnose"))
 }
 
 /// The JSON of `diagnose` for a case without some effects; stored as `name` in the case folder.

@@ -2,6 +2,7 @@
 
 mod channels;
 mod motion;
+mod next;
 mod pictures;
 
 use std::path::{Path, PathBuf};
@@ -14,6 +15,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
 
 use super::common::{self, Format};
+use super::excite::ExperimentArgs;
 use super::input::{self, Input};
 use super::logs::{
     PreparedLog, RawLog, Reader, filter_alike, held_out, hold_out, read_all, refuse_same,
@@ -84,6 +86,13 @@ pub(super) struct DiagnoseArgs {
     #[arg(long, value_name = "FILE.html")]
     report: Option<PathBuf>,
 
+    /// Where the RAPID of the experiment goes that tells apart what is left.
+    #[arg(long, value_name = "DIR")]
+    next: Option<PathBuf>,
+
+    #[command(flatten, next_help_heading = "The next experiment (--next)")]
+    experiment: ExperimentArgs,
+
     /// Print the answers of all gates that lead to the verdict.
     #[arg(long)]
     explain: bool,
@@ -113,6 +122,16 @@ enum TrustArg {
     Cad,
     /// Not at all.
     Unknown,
+}
+
+impl TrustArg {
+    fn name(self) -> &'static str {
+        match self {
+            TrustArg::Commissioned => "commissioned",
+            TrustArg::Cad => "cad",
+            TrustArg::Unknown => "unknown",
+        }
+    }
 }
 
 pub(super) fn run(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
@@ -166,6 +185,8 @@ fn of_case(case: &Path, options: &Value) -> DiagnoseArgs {
         period: options.get("period").and_then(Value::as_f64),
         out: None,
         report: None,
+        next: None,
+        experiment: ExperimentArgs::default(),
         explain: false,
         format: Format::Json,
         quiet: true,
@@ -234,11 +255,11 @@ fn run_diagnosis(
         return diagnose_motion(args, &model, &map, raw, &wanted);
     }
     ready(&model, Use::Diagnose)?;
+    next::check(args, &model)?;
     let Data { train, held, baseline, heldout, notes } = read_data(args, &model, &map, raw, trust)?;
     // These notes were already shown during reading.
     let shown = notes.len();
     let mut basis = report::Basis {
-        robot: args.robot.clone(),
         heldout: heldout.to_owned(),
         graded: held.iter().map(|of| of.record.path.clone()).collect(),
         notes,
@@ -279,6 +300,7 @@ fn run_diagnosis(
                 .into(),
         );
     }
+    basis.next = next::experiment(args, &model, &train, &found)?;
     let graded = if held.is_empty() { &train } else { &held };
     write(args, &model, graded, &found, &mut basis)?;
     common::notes(args.quiet, &basis.notes[shown..]);
@@ -318,7 +340,6 @@ fn diagnose_motion(
     let mut found = Diagnosis::without_torques(model);
     channels::add_runs(&mut found, &of_runs, &lines);
     let mut basis = report::Basis {
-        robot: args.robot.clone(),
         heldout: heldout.to_owned(),
         graded,
         notes: reader.notes,

@@ -3,9 +3,11 @@
 mod area;
 mod args;
 mod motion;
+mod next;
 mod outputs;
 
-pub(super) use args::ExciteArgs;
+pub(super) use args::{ExciteArgs, ExperimentArgs};
+pub(super) use next::{Written, next_experiment};
 
 use std::process::ExitCode;
 
@@ -15,9 +17,10 @@ use nalgebra::Vector3;
 use self::area::{MAX_NUMBER, keep_out, plane};
 use self::args::{MAX_SPACING, Spacing, Variant};
 use self::motion::{TABLE_STEP, designed_motion, plateau_motion};
-use self::outputs::{json, text, write};
+use self::outputs::{json, text, title, write};
 use super::common;
 use super::load;
+use crate::arm::dynamics::Load;
 use crate::arm::effects;
 use crate::arm::kinematics::{Body, Obstacle, Plane};
 use crate::arm::robot::Model;
@@ -45,7 +48,8 @@ pub(super) fn run(args: &ExciteArgs) -> anyhow::Result<ExitCode> {
         Variant::Wrist => plateaus(wrist_plateaus(&model, &body, args.speed_share)?),
         _ => designed_motion(args, &model, &settings, &body)?,
     };
-    let outputs = write(args, &model, &settings.load, &motion)?;
+    let logged = (title(args.variant), args.cell.torque);
+    let outputs = write(&args.out, logged, &model, &settings.load, &motion)?;
     common::print(args.format, || json(&motion, &outputs), || text(&motion, &outputs))
 }
 
@@ -92,6 +96,36 @@ fn settings(args: &ExciteArgs, model: &Model) -> anyhow::Result<Design> {
             );
         }
     }
+    let Cell { obstacles, tool, load } = cell(&args.cell, model)?;
+    let (focus, base_frequency, harmonics, speed_share) = match args.variant {
+        // A tenth of the speed: little inertia, and friction of constant sign.
+        Variant::Gravity => {
+            (Focus::Gravity, 0.1 * args.base_frequency, harmonics, 0.1 * args.speed_share)
+        }
+        Variant::Payload => (Focus::Payload, args.base_frequency, harmonics, args.speed_share),
+        _ => (Focus::All, args.base_frequency, harmonics, args.speed_share),
+    };
+    Ok(Design {
+        focus,
+        base_frequency,
+        harmonics,
+        speed_share,
+        obstacles,
+        tool,
+        load,
+        seed: args.seed,
+    })
+}
+
+/// The cell in which a motion runs.
+pub(super) struct Cell {
+    obstacles: Vec<Obstacle>,
+    /// Tool centre point in tool0 \[m\].
+    tool: Vector3<f64>,
+    load: Load,
+}
+
+pub(super) fn cell(args: &ExperimentArgs, model: &Model) -> anyhow::Result<Cell> {
     let planes = args.planes.iter().map(|text| Ok(Obstacle::Plane(plane(text)?)));
     let boxes = args.boxes.iter().map(|text| Ok(Obstacle::KeepOut(keep_out(text)?)));
     let mut obstacles: Vec<Obstacle> = planes.chain(boxes).collect::<anyhow::Result<_>>()?;
@@ -108,25 +142,7 @@ fn settings(args: &ExciteArgs, model: &Model) -> anyhow::Result<Design> {
         }
         None => Vector3::zeros(),
     };
-    let (focus, base_frequency, harmonics, speed_share) = match args.variant {
-        // A tenth of the speed: little inertia, and friction of constant sign.
-        Variant::Gravity => {
-            (Focus::Gravity, 0.1 * args.base_frequency, harmonics, 0.1 * args.speed_share)
-        }
-        Variant::Payload => (Focus::Payload, args.base_frequency, harmonics, args.speed_share),
-        _ => (Focus::All, args.base_frequency, harmonics, args.speed_share),
-    };
-    let load = load::from_option(args.load.as_deref())?;
-    Ok(Design {
-        focus,
-        base_frequency,
-        harmonics,
-        speed_share,
-        obstacles,
-        tool,
-        load,
-        seed: args.seed,
-    })
+    Ok(Cell { obstacles, tool, load: load::from_option(args.load.as_deref())? })
 }
 
 /// The floor as an obstacle; `None` for a hanging or inclined robot.

@@ -30,6 +30,7 @@ pub(in crate::arm::effects) const FILTER_LAG: Effect = Effect {
     joints: every,
     brings: &[],
     confused: &["time_delay", "elasticity"],
+    inspect: "the filter of the logged signal",
     experiment: ["--harmonics 1,4,7,11", "a filter also takes amplitude"],
     form: Form::Series(added),
 };

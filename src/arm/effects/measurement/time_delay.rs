@@ -30,6 +30,7 @@ pub(in crate::arm::effects) const TIME_DELAY: Effect = Effect {
     joints: every,
     brings: &[],
     confused: &["filter_lag", "presliding", "backlash"],
+    inspect: "the clocks of the logged signals",
     experiment: ["--harmonics 1,4,7,11", "a delay grows with the frequency"],
     form: Form::Series(added),
 };

@@ -42,6 +42,7 @@ pub(in crate::arm::effects) const BACKLASH: Effect = Effect {
     joints: every,
     brings: &[],
     confused: &["presliding", "stribeck", "time_delay"],
+    inspect: "the play of the gear, with the brake closed",
     experiment: ["--variant gravity", "reversals with and without load on the gear"],
     form: Form::Series(added),
 };

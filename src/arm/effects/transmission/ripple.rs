@@ -34,6 +34,7 @@ pub(in crate::arm::effects) const RIPPLE: Effect = Effect {
     joints: every,
     brings: &[],
     confused: &["torque_offset", "position_friction"],
+    inspect: "teeth of the gear, and the mounting of the encoder",
     experiment: ["--speed-share 0.1", "slowly, so that the waves are sampled"],
     form: Form::Law { dissipates: false, torque },
 };

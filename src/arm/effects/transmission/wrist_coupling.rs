@@ -37,6 +37,7 @@ pub(in crate::arm::effects) const WRIST_COUPLING: Effect = Effect {
     joints: |dof| if dof == 6 { vec![5] } else { Vec::new() },
     brings: &["friction_level", "torque_offset"],
     confused: &["friction_level", "rotor_inertia"],
+    inspect: "bearings between the shafts of axes 5 and 6",
     experiment: ["--variant wrist", "axis 5 alone, 5 and 6 against each other"],
     form: Form::Model(change),
 };
