@@ -40,7 +40,7 @@ fn motions_tell_as_much_as_is_promised() {
     assert_eq!(names, [1, 0]);
     let motion = series(NEXT);
     let promised = rivals.separation(&motion.sampled(ROWS), STEP, REPETITIONS);
-    let given = by(&next).effects[0].nats;
+    let given = by(&next).rivals.unwrap().all[0].score;
     let ratio = promised.between(0, 1) / given;
     assert!((1.0 / AS_PROMISED..AS_PROMISED).contains(&ratio), "{ratio} of {given}");
     assert_eq!(promised.nearest(0), Some(1));

@@ -8,17 +8,17 @@ mod sensitivity;
 
 use std::fmt::Write as _;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context, bail};
 use clap::{Args, Subcommand, ValueEnum};
-use serde_json::{Value, json};
+use serde_json::json;
 
-use self::cases::{labels, options, read, write_cases};
+use self::cases::{diagnosis_of_case, known_diagnosis, labels, write_cases};
 use self::family::family;
 use super::common::{self, Format};
-use super::{diagnose, output};
+use super::output;
 use crate::examine::blind::{self, Asked, FAMILY, Grades, KEY, Label, SEALS, Settings};
 use crate::examine::worlds::{self, World};
 use crate::tool::report::html::grades_report;
@@ -210,22 +210,6 @@ fn without<'a>(label: &'a Label, left_out: Option<&'a str>) -> Vec<&'a str> {
         Some(id) => vec![id],
         None => Vec::new(),
     }
-}
-
-fn known_diagnosis(path: &Path) -> anyhow::Result<Value> {
-    let shown = path.display();
-    serde_json::from_str(&read(path)?)
-        .with_context(|| format!("'{shown}' is no JSON; write it again with diagnose"))
-}
-
-/// The JSON of `diagnose` for a case without some effects; stored as `name` in the case folder.
-fn diagnosis_of_case(case: &Path, name: &str, without: &[&str]) -> anyhow::Result<Value> {
-    let value = diagnose::diagnose_case(case, &options(case)?, without)
-        .with_context(|| case.display().to_string())?;
-    // A cache for the next grading.
-    let text = format!("{value:#}\n");
-    output::write(&case.join(name), text.as_bytes())?;
-    Ok(value)
 }
 
 fn table(grades: &Grades) -> String {

@@ -6,23 +6,21 @@ mod motion;
 mod next;
 mod outputs;
 
+pub(super) use area::{cell, floor};
 pub(super) use args::{ExciteArgs, ExperimentArgs};
 pub(super) use next::{Written, next_experiment};
 
 use std::process::ExitCode;
 
 use anyhow::bail;
-use nalgebra::Vector3;
 
-use self::area::{MAX_NUMBER, keep_out, plane};
+use self::area::Cell;
 use self::args::{MAX_SPACING, Spacing, Variant};
 use self::motion::{TABLE_STEP, designed_motion, plateau_motion};
 use self::outputs::{json, text, title, write};
 use super::common;
-use super::load;
-use crate::arm::dynamics::Load;
 use crate::arm::effects;
-use crate::arm::kinematics::{Body, Obstacle, Plane};
+use crate::arm::kinematics::Body;
 use crate::arm::robot::Model;
 use crate::learn::excite::{Design, Focus, Plateaus, friction_plateaus, wrist_plateaus};
 
@@ -115,40 +113,4 @@ fn settings(args: &ExciteArgs, model: &Model) -> anyhow::Result<Design> {
         load,
         seed: args.seed,
     })
-}
-
-/// The cell in which a motion runs.
-pub(super) struct Cell {
-    obstacles: Vec<Obstacle>,
-    /// Tool centre point in tool0 \[m\].
-    tool: Vector3<f64>,
-    load: Load,
-}
-
-pub(super) fn cell(args: &ExperimentArgs, model: &Model) -> anyhow::Result<Cell> {
-    let planes = args.planes.iter().map(|text| Ok(Obstacle::Plane(plane(text)?)));
-    let boxes = args.boxes.iter().map(|text| Ok(Obstacle::KeepOut(keep_out(text)?)));
-    let mut obstacles: Vec<Obstacle> = planes.chain(boxes).collect::<anyhow::Result<_>>()?;
-    obstacles.extend(floor(model));
-    let tool = match &args.tool {
-        Some(text) => {
-            let [x, y, z] = common::numbers(
-                "--tool",
-                text,
-                MAX_NUMBER,
-                "three lengths in mm, such as 0,0,250",
-            )?;
-            Vector3::new(x, y, z) * 1e-3
-        }
-        None => Vector3::zeros(),
-    };
-    Ok(Cell { obstacles, tool, load: load::from_option(args.load.as_deref())? })
-}
-
-/// The floor as an obstacle; `None` for a hanging or inclined robot.
-pub(super) fn floor(model: &Model) -> Option<Obstacle> {
-    let base = &model.kinematics.base;
-    let distance = -base.translation.z;
-    let stands = base.rotation.angle() < 1e-6;
-    stands.then_some(Obstacle::Plane(Plane { normal: Vector3::z(), distance }))
 }

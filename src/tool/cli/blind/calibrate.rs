@@ -9,8 +9,7 @@ use rayon::prelude::*;
 
 use super::super::common::{self, Format};
 use super::super::output;
-use super::cases::labels;
-use super::{diagnosis_of_case, known_diagnosis};
+use super::cases::{diagnosis_of_case, known_diagnosis, labels};
 use crate::examine::blind::{self, Stated};
 use crate::gap::Calibration;
 

@@ -7,7 +7,7 @@ use anyhow::bail;
 use super::super::common;
 use super::super::excite::{ExperimentArgs, Written, cell, next_experiment};
 use super::super::logs::PreparedLog;
-use super::DiagnoseArgs;
+use super::args::DiagnoseArgs;
 use crate::arm::robot::Model;
 use crate::gap::{Diagnosis, Rival, Rivals, Separation};
 use crate::tool::report::diagnose::{Experiment, Outcome, quoted};

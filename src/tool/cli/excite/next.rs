@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
+use super::area::{Cell, cell};
 use super::args::ExperimentArgs;
 use super::motion::{Motion, TABLE_STEP, blended};
 use super::outputs::write;
-use super::{Cell, cell};
 use crate::arm::kinematics::Body;
 use crate::arm::robot::Model;
 use crate::gap::{Rivals, Separation};
