@@ -4,7 +4,7 @@ use crate::arm::effects::Subject;
 use crate::arm::robot::Model;
 
 use super::data::Record;
-use super::decision::{Entry, Finding, Place, Remainder, Verdict, of_odds};
+use super::decision::{Entry, Finding, Gate, Place, Remainder, Verdict, of_odds};
 use super::grade::{Budget, Shrink, shrink};
 use super::model::Improved;
 use super::motion::RunFound;
@@ -88,7 +88,15 @@ impl Diagnosis {
     #[must_use]
     pub fn is_open(&self) -> bool {
         let unsure = |of: &Finding| of.class.len() > 1 || of.probability(true) < SURE;
-        let considered = |of: &Finding| of.probability(false) > POSSIBLE;
+        // What is too small to be a finding is no question.
+        let is_large = |of: &Finding| {
+            self.trail.iter().any(|entry| {
+                entry.gate == Gate::Size
+                    && entry.passed
+                    && entry.hypothesis.starts_with(of.effect.id)
+            })
+        };
+        let considered = |of: &Finding| of.probability(false) > POSSIBLE && is_large(of);
         match self.verdict {
             Verdict::Unknown | Verdict::Partial | Verdict::NotSeparable | Verdict::NotExcited => {
                 true

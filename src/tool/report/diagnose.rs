@@ -325,7 +325,7 @@ pub fn trail(found: &Diagnosis) -> String {
         let (name, gate) = (&of.hypothesis, of.gate.what());
         let _ = writeln!(
             out,
-            "  {answer}  {name:<36} {:>10.4} {sign} {:<8} {gate}",
+            "  {answer}  {name:<36} {:>10.4} {sign} {:<8.4} {gate}",
             of.value, of.limit
         );
     }
@@ -383,14 +383,18 @@ fn place_text(found: &Diagnosis) -> Option<String> {
     let most = whole.max_by(by_share)?;
     let joint = most.joint?;
     let pieces = || found.places.iter().filter(|of| of.joint == Some(joint) && of.regime != "all");
-    let mut text = format!("joint {}, {:.0} % of the gap", joint + 1, 100.0 * most.share);
+    let mut mostly = Vec::new();
     for quantity in ["speed", "position", "load"] {
         let of_quantity = || pieces().filter(|of| of.regime.starts_with(quantity));
         let largest = of_quantity().max_by(by_share);
         // A third of the time holds more than half of it.
         if let Some(largest) = largest.filter(|of| of.share > CONCENTRATED * most.share) {
-            let _ = write!(text, ", mostly at {}", largest.regime);
+            mostly.push(largest.regime.as_str());
         }
+    }
+    let mut text = format!("joint {}, {:.0} % of the gap", joint + 1, 100.0 * most.share);
+    if !mostly.is_empty() {
+        let _ = write!(text, ", mostly at {}", mostly.join(", "));
     }
     Some(text)
 }
