@@ -30,6 +30,8 @@ pub struct Rival {
     pieces: Vec<PieceRows>,
     /// Factors of the columns of the pieces.
     factors: Vec<DVector<f64>>,
+    /// Everyday errors as they are with it: what one explains another one calls an error.
+    sizes: Sizes,
 }
 
 /// Explanations that are left.
@@ -42,8 +44,6 @@ pub struct Rivals {
     refit: Model,
     trust: Trust,
     tunables: Tunables,
-    /// Everyday errors as they were found.
-    sizes: Sizes,
     /// Variance of a row of one repetition, by joint \[N²m²\].
     noise: Vec<f64>,
 }
@@ -103,11 +103,7 @@ impl Rivals {
                 all.push(next.clone());
             }
         }
-        let mut sizes = near.first().unwrap_or(none).fit.sizes.clone();
         all.push(Rival::new(none));
-        for joint in &mut sizes {
-            joint.groups.retain(|(group, _)| !matches!(group, Group::Form(_)));
-        }
         let means = search.records.iter().filter(|record| record.kind == RecordKind::Mean);
         let noises: Vec<Vec<f64>> = means.map(Record::noise_of_one).collect();
         let mean = |joint: usize| {
@@ -119,7 +115,6 @@ impl Rivals {
             refit: refit.clone(),
             trust,
             tunables: search.design.tunables.clone(),
-            sizes,
             noise: (0..believed.dof).map(mean).collect(),
         }
     }
@@ -165,7 +160,7 @@ impl Rivals {
         let nothing = (vec![0.0; there.len()], vec![(0, 0.0); there.len()]);
         let members = one.pieces.iter().cloned();
         let members = members.map(|piece| Member::new(design, records, piece)).collect();
-        let start = Start::at(self.sizes.clone());
+        let start = Start::at(self.all[number].sizes.clone());
         let fit = fitted(design, Hypothesis { members }, start, [0, 0]);
         let (Some(fit), Some(first)) = (fit, self.all.iter().find_map(|of| of.pieces.first()))
         else {
@@ -196,7 +191,12 @@ impl Rival {
             from += piece.prior.len();
             own
         });
+        let mut sizes = of.fit.sizes.clone();
+        for joint in &mut sizes {
+            joint.groups.retain(|(group, _)| !matches!(group, Group::Form(_)));
+        }
         Rival {
+            sizes,
             factors: factors.collect(),
             effects: of
                 .effects
