@@ -15,10 +15,6 @@ use crate::gap::trust::Trust;
 const LARGEST_CLASS: usize = 3;
 /// Joints that are named of an effect of the robot at most.
 const FEW: usize = 2;
-/// Standard deviations of what any robot has within which a parameter is no finding.
-const EVERYDAY: f64 = 3.0;
-/// The same of a change since the baseline, which has them, too.
-const CHANGED: f64 = 0.5;
 /// Correlation from which on a law takes back another one: it is a form of that.
 const TAKES_BACK: f64 = -0.5;
 
@@ -91,7 +87,7 @@ pub(in crate::gap) fn decide(
         .into_par_iter()
         .map(|k| weigh(search, none, found, k, tried))
         .collect();
-    let least = if has_baseline { tunables.least_change } else { tunables.least_share };
+    let least = search.design.least_share();
     let everyday: Vec<f64> = (0..n).map(|j| found.fit.everyday(search.design, j)).collect();
     let left = |fit: &Found, joint: usize| {
         if has_baseline {
@@ -131,7 +127,7 @@ pub(in crate::gap) fn decide(
                 there &= ask(Gate::Form, at.clone(), ratio, tunables.of_confused);
             }
             if let Some(value) = piece.fitted.over_everyday() {
-                let limit = if has_baseline { CHANGED } else { EVERYDAY };
+                let limit = search.design.least_everyday();
                 there &= ask(Gate::Everyday, at.clone(), value, limit);
             }
             if of.pieces.len() > 1 {

@@ -359,8 +359,9 @@ impl Search<'_> {
         all.sort_by(|a, b| b.score.total_cmp(&a.score));
 
         let rest = all.split_off(all.len().min(REFINED));
+        let refined = |of: Found| self.possible([none, found], self.refined(none, found, of));
         let mut all: Vec<Found> =
-            all.into_par_iter().map(|of| self.refined(none, found, of)).chain(rest).collect();
+            all.into_par_iter().filter_map(refined).chain(rest.into_par_iter()).collect();
         all.sort_by(|a, b| b.score.total_cmp(&a.score));
         all
     }
@@ -397,13 +398,21 @@ impl Search<'_> {
         candidate
     }
 
-    /// The set without pieces of its last effect whose parameters cannot be; `None` where none is left.
+    /// The set without pieces of its last effect whose parameters cannot be, or that are too small to be
+    /// a finding: these are everyday errors. `None` where none is left.
     fn possible(&self, known: [&Found; 2], of: Found) -> Option<Found> {
         let mut effects = of.effects.clone();
         let last = effects.last_mut()?;
         let fitted = Fitted::of_fit(&of.fit);
         let first = fitted.len() - last.pieces.len();
-        let is_possible = |k: usize| fitted[first + k].beyond_bounds() <= BEYOND;
+        let nature = last.effect.nature;
+        let least = self.design.least_everyday();
+        let is_possible = |k: usize| {
+            let piece = &fitted[first + k];
+            piece.beyond_bounds() <= BEYOND
+                && piece.over_everyday().is_none_or(|over| over >= least)
+                && (nature == Nature::Parameters || of.fit.is_large(self.design, first + k))
+        };
         let kept: Vec<usize> = (0..last.pieces.len()).filter(|k| is_possible(*k)).collect();
         if kept.len() == last.pieces.len() {
             return Some(of);

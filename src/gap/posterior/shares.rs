@@ -61,6 +61,13 @@ impl Fit {
         self.product(design, [members.clone(), members], joint).sqrt()
     }
 
+    /// Whether a member's share of some joint's torque is that of a finding.
+    #[must_use]
+    pub(in crate::gap) fn is_large(&self, design: &Design, member: usize) -> bool {
+        let least = design.least_share();
+        (0..design.joints.len()).any(|joint| self.share(design, member..member + 1, joint) >= least)
+    }
+
     /// Correlation of the torques of two ranges of members at a joint.
     #[must_use]
     pub(in crate::gap) fn correlation(
