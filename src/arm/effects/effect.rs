@@ -157,6 +157,13 @@ pub enum Role {
     Shape(fn(&Scale) -> Vec<f64>),
     /// A discrete shape parameter: only tried values are possible.
     Choice(fn(&Scale) -> Vec<f64>),
+    /// The order of waves over the position of the joint \[1/rad\]: any that the sampling resolves.
+    Waves {
+        /// The lowest one.
+        least: f64,
+        /// The highest one.
+        most: fn(&Scale) -> f64,
+    },
     /// How it grows and falls in its window, from 0: at once.
     Rise {
         /// The largest value.

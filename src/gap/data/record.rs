@@ -184,6 +184,13 @@ impl<'a> Record<'a> {
         self.used.rows(joint, x)
     }
 
+    /// The series of a joint whose product with another one is that of rows with the other one's, but
+    /// for what is done to series before.
+    pub(in crate::gap) fn back(&self, joint: usize, rows: &[f64]) -> Vec<f64> {
+        let all = self.used.spectrum.back(rows);
+        all.iter().zip(&self.used.window[joint]).map(|(x, w)| x * w).collect()
+    }
+
     fn mean(
         motion: Motion<'a>,
         used: Used,

@@ -3,7 +3,8 @@
 use rayon::prelude::*;
 
 use super::finding::{Estimated, Finding, Remainder, Verdict};
-use super::search::{BEYOND, Candidate, Found, Search, Tried};
+use super::found::{Candidate, Found, Tried};
+use super::search::{BEYOND, Search};
 use super::trail::{Entry, Gate};
 use crate::arm::effects::{Effect, Nature, Scope};
 use crate::gap::data::RecordKind;
@@ -152,9 +153,14 @@ pub(in crate::gap) fn decide(
         list.push(finding);
     }
     let has_parameters = kept.iter().any(|of| of.effect.nature == Nature::Parameters);
-    let fit = match kept.len() {
+    // What is everyday is not unexplained.
+    let mut explained = kept.clone();
+    let is_kept = |id: &str| kept.iter().any(|of| of.effect.id == id);
+    let all = found.effects.iter();
+    explained.extend(all.filter(|of| of.is_everyday && !is_kept(of.effect.id)).cloned());
+    let fit = match explained.len() {
         0 => None,
-        _ => search.with(none, kept.clone()),
+        _ => search.with(none, explained),
     };
     let fit =
         fit.unwrap_or_else(|| Found { effects: Vec::new(), score: 0.0, fit: none.fit.clone() });

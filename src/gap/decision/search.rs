@@ -3,7 +3,9 @@
 use crate::arm::effects::{Acts, Effect, Nature, Scope, Subject};
 use rayon::prelude::*;
 
+use super::found::{Candidate, Found, Searched};
 use super::shape::{lowest, moves, refined};
+use super::waves::Waves;
 use super::window::Windows;
 use crate::gap::data::Record;
 use crate::gap::design::{Design, Group, PieceRows, link_pieces, piece_rows};
@@ -14,8 +16,11 @@ use crate::gap::posterior::{
 
 /// Families that are fitted in full in each round.
 const FULL: usize = 6;
-/// Effects that are found together at most.
+/// Effects that are found together at most, and those of everyday size beside them.
 const MOST: usize = 3;
+const MOST_EVERYDAY: usize = 3;
+/// Rounds in which effects are added at most.
+const ROUNDS_AT_MOST: usize = MOST + 3;
 /// Steps of the sizes, least and most: of a first fit, of a first look at a set, of a fit with a set.
 const FIRST: [usize; 2] = [10, 40];
 const LOOK: [usize; 2] = [3, 12];
@@ -31,64 +36,6 @@ const ROUNDS: usize = 2;
 /// Sets whose shapes are refined in each round.
 const REFINED: usize = 4;
 
-/// Pieces of one effect.
-#[derive(Clone)]
-pub(in crate::gap) struct Candidate {
-    /// The effect.
-    pub effect: &'static Effect,
-    /// Its pieces.
-    pub pieces: Vec<PieceRows>,
-    /// Prior cost \[nats\].
-    pub cost: f64,
-}
-
-impl Candidate {
-    /// Whether another one has the same pieces.
-    fn is_same(&self, other: &Candidate) -> bool {
-        let mut pieces = self.pieces.iter().zip(&other.pieces);
-        self.effect.id == other.effect.id
-            && self.pieces.len() == other.pieces.len()
-            && pieces.all(|(a, b)| a.joint == b.joint && a.shape == b.shape)
-    }
-}
-
-/// A set of effects.
-#[derive(Clone)]
-pub(in crate::gap) struct Found {
-    /// The effects.
-    pub effects: Vec<Candidate>,
-    /// The fit with them.
-    pub fit: Fit,
-    /// Logarithm of the odds against no effect.
-    pub score: f64,
-}
-
-impl Found {
-    fn tried(&self) -> Tried {
-        Tried { ids: self.effects.iter().map(|of| of.effect.id).collect(), score: self.score }
-    }
-}
-
-/// A set that was fitted: ids of its effects, and the logarithm of the odds against no effect.
-pub(in crate::gap) struct Tried {
-    /// Ids.
-    pub ids: Vec<&'static str>,
-    /// Odds \[nats\].
-    pub score: f64,
-}
-
-/// What a search found.
-pub(in crate::gap) struct Searched {
-    /// The fit without effects.
-    pub none: Found,
-    /// The best set.
-    pub best: Found,
-    /// All sets that were fitted.
-    pub tried: Vec<Tried>,
-    /// The best ones of each size.
-    pub near: Vec<Found>,
-}
-
 /// A search.
 pub(in crate::gap) struct Search<'a> {
     /// Records.
@@ -99,6 +46,8 @@ pub(in crate::gap) struct Search<'a> {
     pieces: Vec<PieceRows>,
     /// Effects that act in windows.
     windows: Vec<Windows>,
+    /// Effects that are waves.
+    waves: Vec<Waves>,
 }
 
 impl<'a> Search<'a> {
@@ -119,7 +68,12 @@ impl<'a> Search<'a> {
             let count = if of.scope == Scope::Robot { 1 } else { n };
             (0..count).filter_map(|joint| Windows::new(design, records, of, joint))
         });
-        Search { records, design, pieces, windows: windows.collect() }
+        let waves = effects.iter().flat_map(|of| {
+            let joints = (of.joints)(n).into_iter();
+            joints.filter_map(|joint| Waves::new(records, of, joint))
+        });
+        let (windows, waves) = (windows.collect(), waves.collect());
+        Search { records, design, pieces, windows, waves }
     }
 }
 
@@ -179,7 +133,8 @@ impl Search<'_> {
             let score = chosen.iter().map(|of| of.1[0]).sum::<f64>() - effect_cost;
             let cost = effect_cost + chosen.iter().map(|of| of.1[1]).sum::<f64>();
             let pieces = chosen.iter().map(|of| of.2.clone()).collect();
-            all.push((score, Candidate { effect: first.2.effect, pieces, cost }));
+            let effect = first.2.effect;
+            all.push((score, Candidate { effect, pieces, cost, is_everyday: false }));
         }
         all.sort_by(|a, b| b.0.total_cmp(&a.0));
         all
@@ -219,32 +174,48 @@ impl Search<'_> {
         over.sum()
     }
 
-    /// The best set: effects are added while the evidence grows, then joints and effects that became
-    /// needless are taken out; with all sets that were fitted.
+    /// The best set, with all sets that were fitted. Effects of the size of a finding are added while the
+    /// evidence grows, then those of everyday size, all at once: what these explain as well goes.
     #[must_use]
     pub(in crate::gap) fn best(&self, none: Found) -> Searched {
-        let least = self.design.tunables.least_nats;
         let mut tried = vec![none.tried()];
         let mut near: Vec<Found> = Vec::new();
-        let mut best: Option<Found> = None;
-        for _ in 0..MOST {
-            let mut next = self.next(&none, best.as_ref().unwrap_or(&none));
+        let mut best = none.clone();
+        for _ in 0..ROUNDS_AT_MOST {
+            let mut next = self.next(&none, &best);
             tried.extend(next.iter().map(Found::tried));
-            let before = best.as_ref().map_or(0.0, |best| best.score);
-            let first = next.first().filter(|first| first.score > before + least).cloned();
+            next.retain(|of| of.score > best.score + self.design.tunables.least_nats);
+            let is_finding = |of: &&Found| of.places() > best.places();
+            let first = next.iter().find(is_finding).filter(|of| of.places() <= MOST).cloned();
+            let more = first.or_else(|| self.with_everyday(&none, &best, &next));
             next.truncate(REFINED);
             near.append(&mut next);
-            match first {
-                Some(first) => best = Some(first),
+            match more {
+                Some(more) => best = more,
                 None => break,
             }
         }
-        let best = match best {
-            Some(best) => self.pruned(&none, best),
-            None => none.clone(),
-        };
+        if best.effects.len() > 1 {
+            best = self.pruned(&none, best);
+        }
         tried.push(best.tried());
         Searched { none, best, tried, near }
+    }
+
+    /// A set with the effects of everyday size that others have more.
+    fn with_everyday(&self, none: &Found, found: &Found, others: &[Found]) -> Option<Found> {
+        let mut effects = found.effects.clone();
+        for last in others.iter().filter_map(|of| of.effects.last()).filter(|of| of.is_everyday) {
+            let is_known = effects.iter().any(|of| of.effect.id == last.effect.id);
+            if !is_known && effects.iter().filter(|of| of.is_everyday).count() < MOST_EVERYDAY {
+                effects.push(last.clone());
+            }
+        }
+        if effects.len() == found.effects.len() {
+            return None;
+        }
+        let all = self.pruned(none, self.fit([none, found], effects, STEPS)?);
+        (all.score > found.score + self.design.tunables.least_nats).then_some(all)
     }
 
     /// The set without effects and joints that hardly matter.
@@ -330,11 +301,12 @@ impl Search<'_> {
         let mut wanted: Vec<Candidate> = Vec::new();
         for fit in std::iter::once(&found.fit).chain(plain.iter()) {
             let all = Gains::new(self.design, fit);
-            let more: Vec<PieceRows> = self
-                .windows
-                .par_iter()
-                .flat_map_iter(|of| of.best(self.records, self.design, &all))
-                .collect();
+            let (records, design) = (self.records, self.design);
+            let windows = self.windows.par_iter();
+            let windows = windows.flat_map_iter(|of| of.best(records, design, &all));
+            let waves = self.waves.par_iter();
+            let waves = waves.flat_map_iter(|of| of.best(records, design, &all));
+            let more: Vec<PieceRows> = windows.chain(waves).collect();
             let mut gains = all.of_all(&self.pieces, f64::INFINITY);
             gains.extend(all.of_all(&more, f64::INFINITY));
             let pieces: Vec<PieceRows> = self.pieces.iter().cloned().chain(more).collect();
@@ -398,30 +370,38 @@ impl Search<'_> {
         candidate
     }
 
-    /// The set without pieces of its last effect whose parameters cannot be, or that are too small to be
-    /// a finding: these are everyday errors. `None` where none is left.
+    /// The set without pieces of its last effect whose parameters cannot be; `None` where none is left.
     fn possible(&self, known: [&Found; 2], of: Found) -> Option<Found> {
         let mut effects = of.effects.clone();
         let last = effects.last_mut()?;
         let fitted = Fitted::of_fit(&of.fit);
         let first = fitted.len() - last.pieces.len();
-        let nature = last.effect.nature;
-        let least = self.design.least_everyday();
-        let is_possible = |k: usize| {
-            let piece = &fitted[first + k];
-            piece.beyond_bounds() <= BEYOND
-                && piece.over_everyday().is_none_or(|over| over >= least)
-                && (nature == Nature::Parameters || of.fit.is_large(self.design, first + k))
-        };
-        let kept: Vec<usize> = (0..last.pieces.len()).filter(|k| is_possible(*k)).collect();
+        let kept: Vec<usize> = (0..last.pieces.len())
+            .filter(|k| fitted[first + k].beyond_bounds() <= BEYOND)
+            .collect();
         if kept.len() == last.pieces.len() {
-            return Some(of);
+            return Some(self.rated(of));
         }
         for (k, gone) in last.pieces.iter().enumerate() {
             last.cost -= if kept.contains(&k) { 0.0 } else { self.cost_of(gone) };
         }
         last.pieces = kept.iter().map(|k| last.pieces[*k].clone()).collect();
-        if last.pieces.is_empty() { None } else { self.fit(known, effects, LOOK) }
+        let rest = !last.pieces.is_empty();
+        rest.then(|| self.fit(known, effects, LOOK)).flatten().map(|of| self.rated(of))
+    }
+
+    /// The set, whose last effect takes a place where one of its pieces is of the size of a finding.
+    fn rated(&self, mut of: Found) -> Found {
+        let fitted = Fitted::of_fit(&of.fit);
+        let Some(last) = of.effects.last_mut() else { return of };
+        let least = self.design.least_everyday();
+        let is_large = |member: usize| {
+            of.fit.is_large(self.design, member)
+                && fitted[member].over_everyday().is_none_or(|over| over >= least)
+        };
+        let mut members = fitted.len() - last.pieces.len()..fitted.len();
+        last.is_everyday = last.effect.nature == Nature::Parameters || !members.any(is_large);
+        of
     }
 
     /// Prior cost of a piece \[nats\].

@@ -3,6 +3,8 @@
 //! The evidence of a jump has a narrow peak, as high frequencies know every row that is on the wrong
 //! side of it; low frequencies lead there.
 
+use std::f64::consts::PI;
+
 use crate::arm::effects::{Effect, Role};
 use crate::gap::data::Record;
 use crate::gap::design::PieceRows;
@@ -39,6 +41,14 @@ pub(in crate::gap) fn moves(
     let scale = first.motion.scale(piece.joint.unwrap_or(0));
     let mut all = Vec::new();
     for (k, coordinate) in effect.coordinates.iter().enumerate() {
+        if let (Role::Waves { .. }, Some(joint)) = (coordinate.role, piece.joint) {
+            all.push(Move {
+                coordinate: k,
+                step: 0.5 * resolution(records, joint),
+                is_factor: false,
+            });
+            continue;
+        }
         let (Role::Shape(values) | Role::Choice(values)) = coordinate.role else { continue };
         let tried = values(&scale);
         let value = piece.shape[k];
@@ -56,6 +66,14 @@ pub(in crate::gap) fn moves(
         });
     }
     all
+}
+
+/// Orders of waves over the position of a joint that are told apart \[1/rad\].
+#[must_use]
+pub(super) fn resolution(records: &[Record<'_>], joint: usize) -> f64 {
+    let all = || records.iter().flat_map(|of| &of.motion.q[joint]).copied();
+    let range = all().fold(f64::NEG_INFINITY, f64::max) - all().fold(f64::INFINITY, f64::min);
+    PI / range.max(1e-6)
 }
 
 /// The lowest limit of frequencies \[Hz\].

@@ -147,6 +147,28 @@ impl JointDesign {
         }
     }
 
+    /// Whether it has rows of a set.
+    #[must_use]
+    pub(in crate::gap) fn has(&self, set: Set) -> bool {
+        self.cells.iter().any(|cell| cell.set == set)
+    }
+
+    /// Rows by record, those that are not used 0.
+    #[must_use]
+    pub(in crate::gap) fn by_record(
+        &self,
+        records: &[Record<'_>],
+        rows: &DVector<f64>,
+    ) -> Vec<Vec<f64>> {
+        let count = |record: &Record<'_>| first_row(record.bins());
+        let mut all: Vec<Vec<f64>> = records.iter().map(|of| vec![0.0; count(of)]).collect();
+        for cell in &self.cells {
+            let from = &rows.as_slice()[cell.rows.clone()];
+            all[cell.record][cell.source.clone()].copy_from_slice(from);
+        }
+        all
+    }
+
     /// Number of rows below a frequency \[Hz\].
     #[must_use]
     pub fn rows_below(&self, frequency: f64) -> usize {

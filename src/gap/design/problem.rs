@@ -44,8 +44,7 @@ impl Design {
     }
 
     fn has_baseline(&self) -> bool {
-        let mut cells = self.joints.iter().flat_map(|joint| &joint.cells);
-        cells.any(|cell| cell.set == Set::Baseline)
+        self.joints.iter().any(|joint| joint.has(Set::Baseline))
     }
 
     /// Least share of an effect in a joint's torque, of a change since the baseline where there is one.

@@ -57,6 +57,13 @@ impl<'a> Gains<'a> {
         Gains { design, fit, weighted }
     }
 
+    /// Weights of a joint's rows, and what is left of the difference.
+    #[must_use]
+    pub(in crate::gap) fn left(&self, joint: usize) -> (&DVector<f64>, &DVector<f64>) {
+        let of = &self.weighted[joint];
+        (&of.weights, &of.left)
+    }
+
     /// Products of pieces' columns with everything else marginalised: `A`, `b` of each; rows below
     /// a frequency \[Hz\].
     fn products(&self, pieces: &[&PieceRows], below: f64) -> Vec<(DMatrix<f64>, DVector<f64>)> {
