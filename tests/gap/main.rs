@@ -394,6 +394,7 @@ fn friction_and_rotor_inertia_of_a_wrist_do_not_become_negative() {
         coordinates: change.clone(),
         parameters: change,
         deviations: vec![0.1; 4],
+        significance: None,
     };
     let none = DVector::zeros(0);
     let improved = Improved::new(&nominal, [&none, &none], [&[], &[fitted]]).applied;
@@ -412,6 +413,7 @@ fn a_diagnosed_load_is_added_to_the_listed_one() {
         coordinates: LOAD.to_vec(),
         parameters: payload.parameters_of(&LOAD),
         deviations: vec![0.1; LOAD.len()],
+        significance: None,
     };
     let none = DVector::zeros(0);
     let loaded = |model: &Model| {

@@ -14,6 +14,8 @@ use crate::gap::trust::Trust;
 
 /// Ids of effects that a class has at most: more are unknown.
 const LARGEST_CLASS: usize = 3;
+/// Deviations of a law from 0: what only changes with its shape is no law.
+const SIGNIFICANT: f64 = 3.0;
 /// Joints that are named of an effect of the robot at most.
 const FEW: usize = 2;
 /// Correlation from which on a law takes back another one: it is a form of that.
@@ -124,6 +126,9 @@ pub(in crate::gap) fn decide(
             let mut there = is_quiet
                 & ask(Gate::Size, at.clone(), piece.share, least)
                 & ask(Gate::Bounds, at.clone(), piece.fitted.beyond_bounds(), BEYOND);
+            if let Some(value) = piece.fitted.significance {
+                there &= ask(Gate::Significance, at.clone(), value, SIGNIFICANT);
+            }
             if let Some(ratio) = confused {
                 there &= ask(Gate::Form, at.clone(), ratio, tunables.of_confused);
             }

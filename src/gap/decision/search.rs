@@ -11,7 +11,7 @@ use crate::gap::data::Record;
 use crate::gap::design::{Design, Group, PieceRows, link_pieces, piece_rows};
 use crate::gap::model::Fitted;
 use crate::gap::posterior::{
-    Fit, Gains, Hypothesis, Member, Sizes, Start, fitted, fitted_as_written, usual,
+    Fit, Gains, Hypothesis, Member, Sizes, Start, fitted, fitted_as_written, halfway, usual,
 };
 
 /// Families that are fitted in full in each round.
@@ -296,8 +296,8 @@ impl Search<'_> {
     /// The best sets with one effect more than `found`, best first.
     #[must_use]
     fn next(&self, none: &Found, found: &Found) -> Vec<Found> {
-        let at_usual = Start::at(usual(self.design));
-        let plain = fitted(self.design, found.fit.hypothesis.clone(), at_usual, NO_STEPS);
+        let start = Start::at(halfway(&found.fit.sizes));
+        let plain = fitted(self.design, found.fit.hypothesis.clone(), start, NO_STEPS);
         let mut wanted: Vec<Candidate> = Vec::new();
         for fit in std::iter::once(&found.fit).chain(plain.iter()) {
             let all = Gains::new(self.design, fit);
@@ -329,7 +329,6 @@ impl Search<'_> {
             })
             .collect();
         all.sort_by(|a, b| b.score.total_cmp(&a.score));
-
         let rest = all.split_off(all.len().min(REFINED));
         let refined = |of: Found| self.possible([none, found], self.refined(none, found, of));
         let mut all: Vec<Found> =
@@ -370,15 +369,20 @@ impl Search<'_> {
         candidate
     }
 
-    /// The set without pieces of its last effect whose parameters cannot be; `None` where none is left.
+    /// The set without pieces of its last effect that explain nothing or whose parameters cannot be;
+    /// `None` where none is left.
     fn possible(&self, known: [&Found; 2], of: Found) -> Option<Found> {
         let mut effects = of.effects.clone();
         let last = effects.last_mut()?;
         let fitted = Fitted::of_fit(&of.fit);
         let first = fitted.len() - last.pieces.len();
-        let kept: Vec<usize> = (0..last.pieces.len())
-            .filter(|k| fitted[first + k].beyond_bounds() <= BEYOND)
-            .collect();
+        let explains = |k: &usize| {
+            let nats = of.fit.evidence_of(first + k);
+            nats.is_none_or(|nats| nats > self.cost_of(&last.pieces[*k]))
+        };
+        let all = 0..last.pieces.len();
+        let can_be = all.filter(|k| fitted[first + k].beyond_bounds() <= BEYOND);
+        let kept: Vec<usize> = can_be.filter(explains).collect();
         if kept.len() == last.pieces.len() {
             return Some(self.rated(of));
         }

@@ -69,6 +69,8 @@ pub struct JointDesign {
     pub transposed: DMatrix<f64>,
     /// Groups of the everyday errors.
     pub groups: Vec<Group>,
+    /// Whether a log shows how its repetitions drift.
+    pub shows_drift: bool,
     /// Products of `[y, base]` of each cell.
     pub(in crate::gap) grams: Vec<Packed>,
 }
@@ -102,6 +104,7 @@ impl JointDesign {
             base: DMatrix::zeros(0, 0),
             transposed: DMatrix::zeros(0, 0),
             groups: Vec::new(),
+            shows_drift: records.iter().any(|record| record.kind == RecordKind::Drift),
             grams: Vec::new(),
         };
         let mut y = DVector::zeros(height);
@@ -145,12 +148,6 @@ impl JointDesign {
                 to[cell.rows.clone()].copy_from_slice(&from[cell.source.clone()]);
             }
         }
-    }
-
-    /// Whether it has rows of a set.
-    #[must_use]
-    pub(in crate::gap) fn has(&self, set: Set) -> bool {
-        self.cells.iter().any(|cell| cell.set == set)
     }
 
     /// Rows by record, those that are not used 0.

@@ -44,7 +44,8 @@ impl Design {
     }
 
     fn has_baseline(&self) -> bool {
-        self.joints.iter().any(|joint| joint.has(Set::Baseline))
+        let mut cells = self.joints.iter().flat_map(|joint| &joint.cells);
+        cells.any(|cell| cell.set == Set::Baseline)
     }
 
     /// Least share of an effect in a joint's torque, of a change since the baseline where there is one.

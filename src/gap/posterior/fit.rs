@@ -147,6 +147,28 @@ impl Fit {
         is_beyond
     }
 
+    /// Logarithm of how much more probable the logs are with a member, at the sizes that there are: the
+    /// ratio of the densities of its factors at 0, before and after (J. Dickey, Annals of Mathematical
+    /// Statistics 42, 1971). `None` for what acts by itself.
+    #[must_use]
+    pub(in crate::gap) fn evidence_of(&self, number: usize) -> Option<f64> {
+        let members = &self.hypothesis.members;
+        let piece = &members[number].piece;
+        if piece.is_fixed() {
+            return None;
+        }
+        let before = members[..number].iter().map(|member| member.piece.prior.len());
+        let effects = before.sum::<usize>();
+        let from = self.mean.len() - self.hypothesis.columns() + effects;
+        let (_, sds) = self.prior();
+        let known = self.covariance.view((from, from), (piece.own, piece.own)).into_owned();
+        let factors = self.mean.rows(from, piece.own);
+        let known = known.cholesky()?;
+        let shrunk: f64 =
+            (0..piece.own).map(|k| (known.l_dirty()[(k, k)] / sds[effects + k]).ln()).sum();
+        Some(0.5 * factors.dot(&known.solve(&factors)) + shrunk)
+    }
+
     /// Prior standard deviations and means of the effects' factors.
     fn prior(&self) -> (Vec<f64>, Vec<f64>) {
         let mut sds = Vec::new();

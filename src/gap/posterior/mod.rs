@@ -20,5 +20,5 @@ pub(in crate::gap) use evidence::Evidence;
 pub(in crate::gap) use fit::{Fit, fitted, fitted_as_written};
 pub(in crate::gap) use gain::Gains;
 pub(in crate::gap) use hypothesis::{Hypothesis, Member};
-pub(in crate::gap) use sizes::{Sizes, usual};
+pub(in crate::gap) use sizes::{Sizes, halfway, usual};
 pub(in crate::gap) use start::Start;

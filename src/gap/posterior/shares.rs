@@ -85,7 +85,7 @@ impl Fit {
     /// Mean product of the torques of two ranges of members, of the mean square of the joint's.
     fn product(&self, design: &Design, members: [Range<usize>; 2], joint: usize) -> f64 {
         let of = &design.joints[joint];
-        let set = if members.iter().any(|of| self.drifts(of)) && of.has(Set::Drift) {
+        let set = if members.iter().any(|of| self.drifts(of)) && of.shows_drift {
             Set::Drift
         } else {
             Set::Now

@@ -2,7 +2,7 @@
 
 use super::hypothesis::{Hypothesis, Member};
 use super::reduced::Reduced;
-use super::sizes::{Size, Sizes, usual};
+use super::sizes::{Size, Sizes, halfway};
 use crate::gap::design::Design;
 
 /// What is known of a fit.
@@ -38,8 +38,9 @@ impl Start {
     /// Near known fits: joints that a hypothesis reaches as one of these does keep the sizes of that.
     #[must_use]
     pub(in crate::gap) fn near(design: &Design, of: &Hypothesis, known: [Known<'_>; 2]) -> Start {
+        let [_, near] = known;
         // Sizes that made up for an effect are too large with it, and would shrink slowly.
-        let mut start = Start::at(usual(design));
+        let mut start = Start::at(halfway(near.sizes));
         for joint in 0..design.joints.len() {
             let same = known.iter().find(|fit| same_members(fit.hypothesis, of, joint));
             if let Some(fit) = same {
@@ -50,7 +51,6 @@ impl Start {
                     .then(|| fit.reduced[joint].beside(1 + parameters, of.columns()));
             }
         }
-        let [_, near] = known;
         let members = near.hypothesis.members.iter().zip(&of.members);
         let same = members.take_while(|(a, b)| a.is_same(b)).zip(near.amplitudes);
         start.amplitudes = same.map(|(_, amplitude)| amplitude.value).collect();

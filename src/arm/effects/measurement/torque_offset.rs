@@ -9,7 +9,7 @@ pub(in crate::arm::effects) const TORQUE_OFFSET: Effect = Effect {
     channel: Channel::Torque,
     scope: Scope::Joint,
     subject: Subject::Measurement,
-    nature: Nature::Law,
+    nature: Nature::Parameter,
     acts: Acts::Always,
     variable: None,
     title: "Offset of the torque",
