@@ -157,6 +157,8 @@ pub enum Role {
     Shape(fn(&Scale) -> Vec<f64>),
     /// A discrete shape parameter: only tried values are possible.
     Choice(fn(&Scale) -> Vec<f64>),
+    /// The number of the only joint that has it, from 1; 0: all have it.
+    OnlyJoint,
     /// The order of waves over the position of the joint \[1/rad\]: any that the sampling resolves.
     Waves {
         /// The lowest one.

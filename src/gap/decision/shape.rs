@@ -11,7 +11,7 @@ use crate::gap::design::PieceRows;
 use crate::gap::posterior::Gains;
 
 /// Levels: each halves the steps and doubles the frequencies.
-const LEVELS: i32 = 8;
+const LEVELS: i32 = 6;
 /// The lowest limit, in bins.
 const LOWEST: usize = 24;
 /// Rounds at one level.
@@ -93,15 +93,24 @@ pub(in crate::gap) fn refined(
     lowest: f64,
     reshape: &dyn Fn(&PieceRows, &[f64]) -> PieceRows,
 ) -> PieceRows {
+    let [low, all] =
+        [lowest, f64::INFINITY].map(|below| climbed(gains, piece, moves, below, reshape));
+    if gains.of(&low, f64::INFINITY) > gains.of(&all, f64::INFINITY) { low } else { all }
+}
+
+/// The same by one search, which begins with the frequencies `below` \[Hz\].
+#[must_use]
+pub(super) fn climbed(
+    gains: &Gains<'_>,
+    piece: &PieceRows,
+    moves: &[Move],
+    below: f64,
+    reshape: &dyn Fn(&PieceRows, &[f64]) -> PieceRows,
+) -> PieceRows {
     if moves.is_empty() {
         return piece.clone();
     }
-    let climb = Climb { gains, moves, reshape };
-    let start = reshape(piece, &piece.shape);
-    let both = [lowest, f64::INFINITY].map(|below| climb.from(&start, below));
-    let [a, b] = both.each_ref().map(|of| gains.of(of, f64::INFINITY));
-    let [low, all] = both;
-    if a > b { low } else { all }
+    Climb { gains, moves, reshape }.from(&reshape(piece, &piece.shape), below)
 }
 
 /// A pattern search.

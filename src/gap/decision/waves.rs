@@ -18,6 +18,8 @@ const PARTS: f64 = 8.0;
 const STARTS: usize = 2;
 /// Least gain of an order that is looked at further, beside that of the best one of noise \[nats\].
 const LEAST: f64 = 4.0;
+/// Information on an order below which nothing is seen of it, of the largest one.
+const SEEN: f64 = 1e-2;
 /// Classes of speeds.
 const SPEEDS: usize = 64;
 
@@ -112,13 +114,14 @@ impl Waves {
         }
         FftPlanner::new().plan_fft_forward(count).process(&mut sums);
         let step = std::f64::consts::TAU / (width * count as f64);
-        let of_order = |k: usize| {
-            let order = step * k as f64;
-            let information: f64 = speeds.iter().map(|of| of.information(order)).sum();
-            (order, 0.5 * sums[k].norm_sqr() / information.max(f64::MIN_POSITIVE))
-        };
         let [first, last] = self.orders.map(|order| (order / step) as usize);
-        (first + 1..last.min(count / 2)).map(of_order).collect()
+        let numbers = first + 1..last.min(count / 2);
+        let information =
+            |k: usize| -> f64 { speeds.iter().map(|of| of.information(step * k as f64)).sum() };
+        let known: Vec<f64> = numbers.clone().map(information).collect();
+        let least = SEEN * known.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+        let gain = |(k, known): (usize, f64)| (step * k as f64, 0.5 * sums[k].norm_sqr() / known);
+        numbers.zip(known).filter(|(_, known)| *known > least).map(gain).collect()
     }
 }
 

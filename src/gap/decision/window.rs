@@ -3,7 +3,7 @@
 //! What acts in a window is the sum of what acts in its parts. Where windows begin and end is looked for
 //! at low frequencies, too: they see no single row.
 
-use super::shape::{Move, lowest, refined};
+use super::shape::{Move, climbed, lowest, refined};
 use crate::arm::effects::Effect;
 use crate::gap::data::Record;
 use crate::gap::design::{Design, PieceRows, Times, Whole};
@@ -53,35 +53,37 @@ impl Windows {
         design: &Design,
         gains: &Gains<'_>,
     ) -> Vec<PieceRows> {
-        let limits = [lowest(records), f64::INFINITY];
-        let mut best: Vec<PieceRows> = Vec::new();
-        for below in limits {
+        let within = |_: &PieceRows, shape: &[f64]| {
+            let mut shape = shape.to_vec();
+            let n = shape.len();
+            shape[n - 2] = shape[n - 2].max(shape[n - 3]);
+            if let Some((k, most)) = self.whole.rise() {
+                shape[k] = shape[k].clamp(0.0, most);
+            }
+            self.whole.within(design, records, shape, &self.times)
+        };
+        let by = |coordinate, step| Move { coordinate, step, is_factor: false };
+        let lowest = lowest(records);
+        let mut all: Vec<PieceRows> = Vec::new();
+        for below in [lowest, f64::INFINITY] {
             for window in self.starts(gains, below) {
-                let within = |shape: &[f64]| {
-                    let mut shape = shape.to_vec();
-                    let n = shape.len();
-                    shape[n - 2] = shape[n - 2].max(shape[n - 3]);
-                    if let Some((k, most)) = self.whole.rise() {
-                        shape[k] = shape[k].clamp(0.0, most);
-                    }
-                    self.whole.within(design, records, shape, &self.times)
-                };
-                let piece = within(&self.whole.shape(window, &self.times));
-                let n = piece.shape.len();
-                let by = |coordinate, step| Move { coordinate, step, is_factor: false };
-                let mut moves = vec![by(n - 3, 0.5 * self.part), by(n - 2, 0.5 * self.part)];
-                let climb = |from: &PieceRows, moves: &[Move]| {
-                    refined(gains, from, moves, lowest(records), &|_, shape| within(shape))
-                };
-                let at_once = climb(&piece, &moves);
-                if let Some((k, most)) = self.whole.rise() {
-                    moves.push(by(k, 0.5 * most));
-                    best.push(climb(&at_once, &moves));
-                }
-                best.push(at_once);
+                let shape = self.whole.shape(window, &self.times);
+                let start = self.whole.within(design, records, shape, &self.times);
+                let n = start.shape.len();
+                let ends = [by(n - 3, 0.5 * self.part), by(n - 2, 0.5 * self.part)];
+                all.push(climbed(gains, &start, &ends, below, &within));
             }
         }
-        best
+        // What is slow to rise begins at the best window of what is there at once.
+        let gain = |piece: &PieceRows| gains.of(piece, f64::INFINITY);
+        let best = all.iter().max_by(|a, b| gain(a).total_cmp(&gain(b)));
+        if let (Some(best), Some((k, most))) = (best, self.whole.rise()) {
+            let n = best.shape.len();
+            let ends = [by(n - 3, 0.5 * self.part), by(n - 2, 0.5 * self.part)];
+            let moves: Vec<Move> = ends.into_iter().chain([by(k, 0.5 * most)]).collect();
+            all.push(refined(gains, best, &moves, lowest, &within));
+        }
+        all
     }
 
     /// Windows that begin and end with parts and explain most, apart from each other.

@@ -96,9 +96,13 @@ impl Fitted {
     }
 
     /// The largest parameter of which any robot has some, over what is usual of it; `None` without
-    /// such a parameter.
+    /// such a parameter, or where one joint alone has it.
     #[must_use]
     pub fn over_everyday(&self) -> Option<f64> {
+        let mut coordinates = self.effect.coordinates.iter().zip(&self.coordinates);
+        if coordinates.any(|(of, joint)| matches!(of.role, Role::OnlyJoint) && *joint != 0.0) {
+            return None;
+        }
         let values = self.effect.parameters.iter().zip(&self.parameters);
         let usual = values.filter(|(of, _)| of.everyday > 0.0);
         usual.map(|(of, value)| value.abs() / of.everyday).reduce(f64::max)

@@ -24,7 +24,7 @@ pub(in crate::arm::effects) const FILTER_LAG: Effect = Effect {
     ],
     coordinates: &[
         shape(|_| vec![0.002, 0.004, 0.008, 0.016, 0.032]),
-        Coordinate { role: Role::Choice(|_| vec![0.0]), usual: shaped },
+        Coordinate { role: Role::OnlyJoint, usual: shaped },
     ],
     published: None,
     joints: every,
