@@ -54,7 +54,7 @@ tunables! {
     /// Everyday lag of one joint beyond that of all.
     joint_lag = 0.001, "s", "chosen on data/gap_cases";
     /// Inertia of the rotor that a model lacks, of the inertia of the joint.
-    missing_rotor = 1.0, "1", "derived: rotors are matched to the links";
+    missing_rotor = 10.0, "1", "derived: the rotor of a wrist has several times the inertia of a bare flange";
     /// Errors of friction, as shares of it, over errors of the bodies, as shares of the torque.
     of_friction = 5.0, "1", "derived: --trust has 1 % for masses and 5 % for friction";
     /// Median of a smooth everyday error, of the torque.

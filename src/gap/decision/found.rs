@@ -18,16 +18,6 @@ pub(in crate::gap) struct Candidate {
     pub is_everyday: bool,
 }
 
-impl Candidate {
-    /// Whether another one has the same pieces.
-    pub(super) fn is_same(&self, other: &Candidate) -> bool {
-        let mut pieces = self.pieces.iter().zip(&other.pieces);
-        self.effect.id == other.effect.id
-            && self.pieces.len() == other.pieces.len()
-            && pieces.all(|(a, b)| a.joint == b.joint && a.shape == b.shape)
-    }
-}
-
 /// A set of effects.
 #[derive(Clone)]
 pub(in crate::gap) struct Found {

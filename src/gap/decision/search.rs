@@ -14,7 +14,8 @@ use crate::gap::posterior::{
     Fit, Gains, Hypothesis, Member, Sizes, Start, fitted, fitted_as_written, halfway, usual,
 };
 
-/// Families that are fitted in full in each round.
+/// Effects at single joints that are looked at in each round, and effects at all their joints.
+const SINGLES: usize = 60;
 const FULL: usize = 6;
 /// Effects that are found together at most, and those of everyday size beside them.
 const MOST: usize = 3;
@@ -85,59 +86,48 @@ impl Search<'_> {
         Some(Found { effects: Vec::new(), score: 0.0, fit })
     }
 
-    /// For each effect that is not in the set, its best joints and shapes beside it.
-    #[must_use]
-    fn candidates(
+    /// For each effect that is not in the set its best shape at each joint, those alone that may explain
+    /// something.
+    fn singles(
         &self,
-        pieces: &[PieceRows],
-        gains: &[[f64; 2]],
+        pieces: Vec<PieceRows>,
+        gains: &Gains<'_>,
         set: &[Candidate],
-    ) -> Vec<(f64, Candidate)> {
-        let mut all: Vec<(f64, Candidate)> = Vec::new();
-        let mut ids: Vec<&'static str> = Vec::new();
-        for piece in pieces {
-            if !ids.contains(&piece.effect.id) {
-                ids.push(piece.effect.id);
+    ) -> Vec<Candidate> {
+        let all = gains.of_all(&pieces, f64::INFINITY);
+        let is_there = |piece: &PieceRows| {
+            let id = piece.effect.id;
+            let brings =
+                |other: &PieceRows| other.joint == piece.joint && other.effect.brings.contains(&id);
+            set.iter().any(|of| of.effect.id == id || of.pieces.iter().any(brings))
+        };
+        let mut best: Vec<(f64, PieceRows)> = Vec::new();
+        for (piece, gain) in pieces.into_iter().zip(all) {
+            let net = gain - self.cost_of(&piece);
+            if net <= 0.0 || is_there(&piece) {
+                continue;
+            }
+            let is_like =
+                |of: &PieceRows| of.effect.id == piece.effect.id && of.joint == piece.joint;
+            match best.iter_mut().find(|(_, of)| is_like(of)) {
+                Some(known) if net > known.0 => *known = (net, piece),
+                Some(_) => {}
+                None => best.push((net, piece)),
             }
         }
-        for id in ids.into_iter().filter(|id| set.iter().all(|of| of.effect.id != *id)) {
-            // By joint: the gain less the cost, the cost, the piece.
-            let mut best: Vec<(Option<usize>, [f64; 2], &PieceRows)> = Vec::new();
-            let brought = |piece: &PieceRows| {
-                let of_joint = |other: &PieceRows| {
-                    other.joint == piece.joint && other.effect.brings.contains(&id)
-                };
-                set.iter().flat_map(|of| &of.pieces).any(of_joint)
-            };
-            for (piece, [gain, of_brought]) in
-                pieces.iter().zip(gains).filter(|(p, _)| p.effect.id == id)
-            {
-                if brought(piece) {
-                    continue;
-                }
-                let cost = self.cost_of(piece) + of_brought;
-                let net = gain - cost;
-                match best.iter_mut().find(|(joint, ..)| *joint == piece.joint) {
-                    Some(known) if net > known.1[0] => (known.1, known.2) = ([net, cost], piece),
-                    Some(_) => {}
-                    None => best.push((piece.joint, [net, cost], piece)),
-                }
+        best.sort_by(|a, b| b.0.total_cmp(&a.0));
+        best.truncate(SINGLES);
+        let single = |(_, piece): (f64, PieceRows)| {
+            // What acts by itself explains nothing with a wrong shape.
+            let piece = if piece.is_fixed() { self.best_shape(gains, &piece) } else { piece };
+            Candidate {
+                effect: piece.effect,
+                cost: self.design.tunables.effect_cost + self.cost_of(&piece),
+                pieces: vec![piece],
+                is_everyday: false,
             }
-            best.sort_by(|a, b| b.1[0].total_cmp(&a.1[0]));
-            let wanted = |(k, of): &(usize, &(Option<usize>, [f64; 2], &PieceRows))| {
-                *k == 0 || of.1[0] > 0.0
-            };
-            let chosen: Vec<_> = best.iter().enumerate().filter(wanted).map(|(_, of)| of).collect();
-            let Some(first) = chosen.first() else { continue };
-            let effect_cost = self.design.tunables.effect_cost;
-            let score = chosen.iter().map(|of| of.1[0]).sum::<f64>() - effect_cost;
-            let cost = effect_cost + chosen.iter().map(|of| of.1[1]).sum::<f64>();
-            let pieces = chosen.iter().map(|of| of.2.clone()).collect();
-            let effect = first.2.effect;
-            all.push((score, Candidate { effect, pieces, cost, is_everyday: false }));
-        }
-        all.sort_by(|a, b| b.0.total_cmp(&a.0));
-        all
+        };
+        best.into_par_iter().map(single).collect()
     }
 
     /// The fit with a set of effects.
@@ -159,8 +149,10 @@ impl Search<'_> {
         let start = Start::near(self.design, &hypothesis, [none.fit.known(), near.fit.known()]);
         let fit = fitted(self.design, hypothesis, start, steps)?;
         let cost: f64 = effects.iter().map(|of| of.cost).sum();
-        let score = fit.log_evidence - none.fit.log_evidence - cost - self.beyond_usual(&fit)
-            + self.beyond_usual(&none.fit);
+        let brought: f64 = (0..fit.hypothesis.members.len()).map(|k| fit.brought_by(k)).sum();
+        let score =
+            fit.log_evidence - none.fit.log_evidence - cost - brought - self.beyond_usual(&fit)
+                + self.beyond_usual(&none.fit);
         Some(Found { effects, fit, score })
     }
 
@@ -297,37 +289,27 @@ impl Search<'_> {
     #[must_use]
     fn next(&self, none: &Found, found: &Found) -> Vec<Found> {
         let start = Start::at(halfway(&found.fit.sizes));
-        let plain = fitted(self.design, found.fit.hypothesis.clone(), start, NO_STEPS);
-        let mut wanted: Vec<Candidate> = Vec::new();
-        for fit in std::iter::once(&found.fit).chain(plain.iter()) {
-            let all = Gains::new(self.design, fit);
-            let (records, design) = (self.records, self.design);
-            let windows = self.windows.par_iter();
-            let windows = windows.flat_map_iter(|of| of.best(records, design, &all));
-            let waves = self.waves.par_iter();
-            let waves = waves.flat_map_iter(|of| of.best(records, design, &all));
-            let more: Vec<PieceRows> = windows.chain(waves).collect();
-            let mut gains = all.of_all(&self.pieces, f64::INFINITY);
-            gains.extend(all.of_all(&more, f64::INFINITY));
-            let pieces: Vec<PieceRows> = self.pieces.iter().cloned().chain(more).collect();
-            let mut best = self.candidates(&pieces, &gains, &found.effects);
-            best.truncate(FULL);
-            let best: Vec<Candidate> =
-                best.into_par_iter().map(|(_, candidate)| self.shaped(&all, candidate)).collect();
-            for candidate in best {
-                if !wanted.iter().any(|of| of.is_same(&candidate)) {
-                    wanted.push(candidate);
-                }
-            }
-        }
-        let mut all: Vec<Found> = wanted
-            .into_par_iter()
-            .filter_map(|candidate| {
-                let mut effects = found.effects.clone();
-                effects.push(candidate);
-                self.possible([none, found], self.fit([none, found], effects, LOOK)?)
-            })
-            .collect();
+        let halfway = fitted(self.design, found.fit.hypothesis.clone(), start, NO_STEPS);
+        let Some(halfway) = halfway else { return Vec::new() };
+        let gains = Gains::new(self.design, &halfway);
+        let (records, design) = (self.records, self.design);
+        let windows = self.windows.par_iter();
+        let windows = windows.flat_map_iter(|of| of.best(records, design, &gains));
+        let waves = self.waves.par_iter();
+        let waves = waves.flat_map_iter(|of| of.best(records, design, &gains));
+        let mut pieces = self.pieces.clone();
+        pieces.extend(windows.chain(waves).collect::<Vec<_>>());
+        let singles = self.singles(pieces, &gains, &found.effects);
+        let look = |candidate: Candidate| {
+            let mut effects = found.effects.clone();
+            effects.push(candidate);
+            self.possible([none, found], self.fit([none, found], effects, LOOK)?)
+        };
+        let looked: Vec<Found> = singles.into_par_iter().filter_map(look).collect();
+        let joined = self.joined(found, looked).into_par_iter();
+        let looked =
+            |(candidate, single): (Candidate, Option<Found>)| single.or_else(|| look(candidate));
+        let mut all: Vec<Found> = joined.filter_map(looked).collect();
         all.sort_by(|a, b| b.score.total_cmp(&a.score));
         let rest = all.split_off(all.len().min(REFINED));
         let refined = |of: Found| self.possible([none, found], self.refined(none, found, of));
@@ -335,6 +317,35 @@ impl Search<'_> {
             all.into_par_iter().filter_map(refined).chain(rest.into_par_iter()).collect();
         all.sort_by(|a, b| b.score.total_cmp(&a.score));
         all
+    }
+
+    /// The best effects at all joints at which they explain something, from sets with one piece more than
+    /// `found`; where that is one joint, with its set.
+    fn joined(&self, found: &Found, singles: Vec<Found>) -> Vec<(Candidate, Option<Found>)> {
+        let effect_cost = self.design.tunables.effect_cost;
+        let gain = |of: &Found| of.score - found.score + effect_cost;
+        let mut by_effect: Vec<(&'static str, Vec<Found>)> = Vec::new();
+        for of in singles.into_iter().filter(|of| gain(of) > 0.0) {
+            let Some(id) = of.effects.last().map(|last| last.effect.id) else { continue };
+            match by_effect.iter_mut().find(|(known, _)| *known == id) {
+                Some((_, all)) => all.push(of),
+                None => by_effect.push((id, vec![of])),
+            }
+        }
+        let of_effect = |(_, all): (&str, Vec<Found>)| {
+            let score: f64 = all.iter().map(gain).sum();
+            let mut candidate = all.first()?.effects.last()?.clone();
+            let pieces = all.iter().filter_map(|of| of.effects.last()).flat_map(|of| &of.pieces);
+            candidate.pieces = pieces.cloned().collect();
+            let costs = candidate.pieces.iter().map(|piece| self.cost_of(piece));
+            candidate.cost = effect_cost + costs.sum::<f64>();
+            let single = if all.len() == 1 { all.into_iter().next() } else { None };
+            Some((score, (candidate, single)))
+        };
+        let mut all: Vec<_> = by_effect.into_iter().filter_map(of_effect).collect();
+        all.sort_by(|a, b| b.0.total_cmp(&a.0));
+        all.truncate(FULL);
+        all.into_iter().map(|(_, of)| of).collect()
     }
 
     /// A piece with the best shape beside a fit.
@@ -348,25 +359,6 @@ impl Search<'_> {
         } else {
             piece.reshaped(design, records, &best.shape, true)
         }
-    }
-
-    /// A candidate whose pieces that act by themselves, which explain nothing with a wrong shape, have
-    /// their best ones; those that explain nothing even so go.
-    fn shaped(&self, gains: &Gains<'_>, mut candidate: Candidate) -> Candidate {
-        let pieces = std::mem::take(&mut candidate.pieces);
-        for piece in pieces {
-            if !piece.is_fixed() {
-                candidate.pieces.push(piece);
-                continue;
-            }
-            let best = self.best_shape(gains, &piece);
-            if candidate.pieces.is_empty() || gains.of(&best, f64::INFINITY) > self.cost_of(&best) {
-                candidate.pieces.push(best);
-            } else {
-                candidate.cost -= self.cost_of(&piece);
-            }
-        }
-        candidate
     }
 
     /// The set without pieces of its last effect that explain nothing or whose parameters cannot be;

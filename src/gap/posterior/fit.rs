@@ -39,6 +39,8 @@ const CONVERGED: f64 = 0.5;
 const AS_WRITTEN: [usize; 2] = [8, 32];
 /// Deviation of a parameter that keeps its value, of its usual one.
 const KEPT: f64 = 1e-3;
+/// Steps of the amplitudes before those of all sizes.
+const AMPLITUDES: usize = 5;
 /// Curvature that is added where a size hardly matters.
 const LEAST_CURVATURE: f64 = 0.3;
 
@@ -101,6 +103,11 @@ fn fit_from(
     };
     fit.start_forms(design);
     fit.reduce(design, start.reduced)?;
+    // Effects take their sizes first, or everyday errors grow in their place.
+    for _ in 0..if most > 0 { AMPLITUDES } else { 0 } {
+        fit.amplitude_step(design.parameters.count());
+        fit.solve(design.parameters.count(), &design.parameters)?;
+    }
     // Sizes that are far off need more steps.
     let mut before = f64::NEG_INFINITY;
     for round in 0..most {
@@ -147,25 +154,42 @@ impl Fit {
         is_beyond
     }
 
-    /// Logarithm of how much more probable the logs are with a member, at the sizes that there are: the
-    /// ratio of the densities of its factors at 0, before and after (J. Dickey, Annals of Mathematical
-    /// Statistics 42, 1971). `None` for what acts by itself.
+    /// Logarithm of how much more probable the logs are with a member, what it brings along being there,
+    /// at the sizes that there are. `None` for what acts by itself.
     #[must_use]
     pub(in crate::gap) fn evidence_of(&self, number: usize) -> Option<f64> {
+        self.evidence_of_columns(number, self.hypothesis.members[number].piece.own)
+    }
+
+    /// What the columns gain by themselves that a member brings along: it is none of its own.
+    #[must_use]
+    pub(in crate::gap) fn brought_by(&self, number: usize) -> f64 {
+        let piece = &self.hypothesis.members[number].piece;
+        if piece.own == piece.prior.len() {
+            return 0.0;
+        }
+        let of = |count: usize| self.evidence_of_columns(number, count);
+        match (of(piece.prior.len()), of(piece.own)) {
+            (Some(all), Some(own)) => (all - own).max(0.0),
+            _ => 0.0,
+        }
+    }
+
+    /// The ratio of the densities of a member's first factors at 0, before and after (J. Dickey, Annals
+    /// of Mathematical Statistics 42, 1971).
+    fn evidence_of_columns(&self, number: usize, count: usize) -> Option<f64> {
         let members = &self.hypothesis.members;
-        let piece = &members[number].piece;
-        if piece.is_fixed() {
+        if members[number].piece.is_fixed() {
             return None;
         }
         let before = members[..number].iter().map(|member| member.piece.prior.len());
         let effects = before.sum::<usize>();
         let from = self.mean.len() - self.hypothesis.columns() + effects;
         let (_, sds) = self.prior();
-        let known = self.covariance.view((from, from), (piece.own, piece.own)).into_owned();
-        let factors = self.mean.rows(from, piece.own);
-        let known = known.cholesky()?;
+        let known = self.covariance.view((from, from), (count, count)).into_owned().cholesky()?;
+        let factors = self.mean.rows(from, count);
         let shrunk: f64 =
-            (0..piece.own).map(|k| (known.l_dirty()[(k, k)] / sds[effects + k]).ln()).sum();
+            (0..count).map(|k| (known.l_dirty()[(k, k)] / sds[effects + k]).ln()).sum();
         Some(0.5 * factors.dot(&known.solve(&factors)) + shrunk)
     }
 

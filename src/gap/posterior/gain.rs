@@ -173,15 +173,15 @@ impl<'a> Gains<'a> {
         sums.iter().map(gain).collect()
     }
 
-    /// Gains of all pieces, and what the columns gain by themselves that each brings along. What a
-    /// shape does by itself counts as far as it helps: the right shape may be between the tried ones.
+    /// Gains of all pieces. What a shape does by itself counts as far as it helps: the right shape may be
+    /// between the tried ones.
     #[must_use]
-    pub(in crate::gap) fn of_all(&self, pieces: &[PieceRows], below: f64) -> Vec<[f64; 2]> {
+    pub(in crate::gap) fn of_all(&self, pieces: &[PieceRows], below: f64) -> Vec<f64> {
         let spread = self.design.tunables.amplitude_spread;
-        let gains = |pieces: &[PieceRows]| -> Vec<[f64; 2]> {
+        let gains = |pieces: &[PieceRows]| -> Vec<f64> {
             let of: Vec<&PieceRows> = pieces.iter().collect();
-            let both = |(of, piece)| [most(of, piece, spread), brought(of, piece)];
-            self.products(&of, below).iter().zip(pieces).map(both).collect()
+            let all = self.products(&of, below);
+            all.iter().zip(pieces).map(|(of, piece)| most(of, piece, spread)).collect()
         };
         pieces.par_chunks(TOGETHER).flat_map_iter(gains).collect()
     }
@@ -191,17 +191,6 @@ impl<'a> Gains<'a> {
 const WIDE: usize = 6;
 /// Pieces whose products are computed together.
 const TOGETHER: usize = 64;
-
-/// What the columns gain that a piece brings along: it is none of its own.
-fn brought((a, b): &(DMatrix<f64>, DVector<f64>), piece: &PieceRows) -> f64 {
-    let count = piece.prior.len() - piece.own;
-    if count == 0 {
-        return 0.0;
-    }
-    let a = a.view((piece.own, piece.own), (count, count)).into_owned();
-    let b = b.rows(piece.own, count).into_owned();
-    gain(&a, &b, &piece.prior[piece.own..], 1.0).max(0.0)
-}
 
 /// The gain of a piece, of as much of it as helps where it acts by itself.
 fn most(products: &(DMatrix<f64>, DVector<f64>), piece: &PieceRows, spread: f64) -> f64 {
@@ -223,7 +212,7 @@ fn best((a, b): &(DMatrix<f64>, DVector<f64>), prior: &[(f64, f64)], spread: f64
 }
 
 /// Amplitudes that are tried, over the usual one.
-const TRIED: [f64; 4] = [0.3, 1.0, 3.0, 10.0];
+const TRIED: [f64; 5] = [0.3, 1.0, 3.0, 10.0, 30.0];
 
 /// The gain of columns with some prior.
 fn gain(a: &DMatrix<f64>, b: &DVector<f64>, prior: &[(f64, f64)], amplitude: f64) -> f64 {
