@@ -15,8 +15,9 @@ const NEXT: [u64; 4] = [5, 6, 7, 8];
 const ROWS: usize = 1000;
 const STEP: f64 = 0.01;
 const REPETITIONS: usize = 7;
-/// Share of a motion's amplitude with which friction over the speed hardly shows.
-const SMALL: f64 = 0.2;
+/// Share of a motion's amplitude with which all speeds are far below that of the Stribeck curve, which is
+/// dry friction there.
+const SMALL: f64 = 0.01;
 
 /// What is promised of a motion is what its log gives.
 #[test]
