@@ -315,6 +315,7 @@ impl Weighing<'_> {
             let given = self.evidence.gain(&chosen);
             let with = |k: usize| [chosen.as_slice(), &[k]].concat();
             let best = (0..self.causes.len())
+                .rev()
                 .filter(|k| !chosen.iter().any(|of| self.is_alike(*of, *k)))
                 .filter(|k| self.is_possible(&with(*k)))
                 .map(|k| (self.evidence.gain(&with(k)), k))
@@ -338,7 +339,8 @@ impl Weighing<'_> {
         let Some(values) = self.evidence.estimate(chosen) else { return false };
         let mut of = chosen.iter().zip(values.mean.iter());
         of.all(|(k, value)| {
-            *value >= self.causes[*k].least
+            // What takes less beside what takes more makes up for a law of another form.
+            *value >= if chosen.len() > 1 { 0.0 } else { self.causes[*k].least }
                 && value.abs() * self.sizes[*k] > LEAST_SIZE * self.power
         })
     }

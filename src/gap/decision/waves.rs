@@ -20,6 +20,8 @@ const STARTS: usize = 2;
 const LEAST: f64 = 4.0;
 /// Information on an order below which nothing is seen of it, of the largest one.
 const SEEN: f64 = 1e-2;
+/// Waves that have to be seen within the range of the joint.
+const WAVES: f64 = 2.0;
 /// Classes of speeds.
 const SPEEDS: usize = 64;
 
@@ -52,6 +54,8 @@ impl Waves {
         let mut roles = effect.coordinates.iter().map(|of| of.role).enumerate();
         let (coordinate, orders) = roles.find_map(of_role)?;
         let resolution = resolution(records, joint);
+        // Slower ones are smooth functions of the position, which any robot has.
+        let orders = [orders[0].max(2.0 * WAVES * resolution), orders[1]];
         let usual = effect.coordinates.iter().map(|of| (of.usual)(&scale)).collect();
         (orders[1] > orders[0] + resolution).then_some(Waves {
             effect,
