@@ -122,7 +122,7 @@ pub(in crate::gap) fn decide(
                 .clamp(tunables.over_everyday, tunables.over_unexplained);
             let least = least.max(over * left);
             let confused = beside_confused(search, found, &weighed, [number, k]);
-            let is_quiet = joint.is_none_or(|joint| !noisy.contains(&joint));
+            let is_quiet = !noisy.contains(&joint.unwrap_or(piece.most));
             let mut there = is_quiet
                 & ask(Gate::Size, at.clone(), piece.share, least)
                 & ask(Gate::Bounds, at.clone(), piece.fitted.beyond_bounds(), BEYOND);

@@ -1,17 +1,17 @@
 //! Effects that act for a part of each repetition, or of a log.
 //!
-//! What acts in a window is the sum of what acts in its parts. Where windows begin and end is looked for
-//! at low frequencies, too: they see no single row.
+//! What acts in a window is the sum of what acts in its parts: the products of the parts tell what each
+//! window would gain. The best ones are moved until their ends fit.
 
-use super::shape::{Move, climbed, lowest, refined};
+use super::shape::{Move, climbed, lowest};
 use crate::arm::effects::Effect;
 use crate::gap::data::Record;
 use crate::gap::design::{Design, PieceRows, Times, Whole};
 use crate::gap::posterior::Gains;
 
 /// Parts of a repetition at which windows begin and end, and their lengths in parts.
-const PARTS: usize = 20;
-const LENGTHS: [usize; 5] = [1, 2, 3, 5, 8];
+const PARTS: usize = 96;
+const LENGTHS: [usize; 11] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 40];
 /// Windows from which the best one is looked for.
 const STARTS: usize = 2;
 /// Least gain of a window that is looked at further \[nats\].
@@ -63,46 +63,50 @@ impl Windows {
             self.whole.within(design, records, shape, &self.times)
         };
         let by = |coordinate, step| Move { coordinate, step, is_factor: false };
-        let lowest = lowest(records);
-        let mut all: Vec<PieceRows> = Vec::new();
-        for below in [lowest, f64::INFINITY] {
-            for window in self.starts(gains, below) {
-                let shape = self.whole.shape(window, &self.times);
-                let start = self.whole.within(design, records, shape, &self.times);
-                let n = start.shape.len();
-                let ends = [by(n - 3, 0.5 * self.part), by(n - 2, 0.5 * self.part)];
-                all.push(climbed(gains, &start, &ends, below, &within));
-            }
-        }
+        let climb = |window: [f64; 2]| {
+            let shape = self.whole.shape(window, &self.times);
+            let start = self.whole.within(design, records, shape, &self.times);
+            let n = start.shape.len();
+            let ends = [by(n - 3, 0.5 * self.part), by(n - 2, 0.5 * self.part)];
+            climbed(gains, &start, &ends, f64::INFINITY, &within)
+        };
+        let mut all: Vec<PieceRows> =
+            self.starts(gains, lowest(records)).into_iter().map(climb).collect();
         // What is slow to rise begins at the best window of what is there at once.
         let gain = |piece: &PieceRows| gains.of(piece, f64::INFINITY);
         let best = all.iter().max_by(|a, b| gain(a).total_cmp(&gain(b)));
         if let (Some(best), Some((k, most))) = (best, self.whole.rise()) {
             let n = best.shape.len();
-            let ends = [by(n - 3, 0.5 * self.part), by(n - 2, 0.5 * self.part)];
-            let moves: Vec<Move> = ends.into_iter().chain([by(k, 0.5 * most)]).collect();
-            all.push(refined(gains, best, &moves, lowest, &within));
+            let moves = [by(n - 3, self.part), by(n - 2, self.part), by(k, 0.5 * most)];
+            all.push(climbed(gains, best, &moves, lowest(records), &within));
         }
         all
     }
 
-    /// Windows that begin and end with parts and explain most, apart from each other.
-    fn starts(&self, gains: &Gains<'_>, below: f64) -> Vec<[f64; 2]> {
+    /// Windows that begin and end with parts and explain most, apart from each other: of those that the
+    /// low frequencies tell and of those that all do.
+    fn starts(&self, gains: &Gains<'_>, lowest: f64) -> Vec<[f64; 2]> {
         let windows: Vec<[usize; 2]> = LENGTHS
             .iter()
             .flat_map(|length| (0..PARTS).map(move |begin| [begin, begin + length]))
             .filter(|[_, end]| self.times.period > 0.0 || *end <= PARTS)
             .collect();
-        let of_windows = gains.of_sums(&self.parts, PARTS, &windows, below);
-        let mut all: Vec<(f64, [usize; 2])> = of_windows.into_iter().zip(windows).collect();
-        all.sort_by(|a, b| b.0.total_cmp(&a.0));
         let least = LEAST + (self.times.choices as f64).ln();
         let mut best: Vec<[usize; 2]> = Vec::new();
-        for (_, [a, b]) in all.into_iter().take_while(|(gain, _)| *gain > least) {
-            let is_apart =
-                |[c, d]: &[usize; 2]| 2 * b.min(*d).saturating_sub(a.max(*c)) <= (b - a).min(d - c);
-            if best.len() < STARTS && best.iter().all(is_apart) {
-                best.push([a, b]);
+        for below in [lowest, f64::INFINITY] {
+            let of_windows = gains.of_windows(&self.parts, PARTS, &windows, below);
+            let mut all: Vec<(f64, [usize; 2])> =
+                of_windows.into_iter().zip(windows.iter().copied()).collect();
+            all.sort_by(|a, b| b.0.total_cmp(&a.0));
+            let mut count = 0;
+            for (_, [a, b]) in all.into_iter().take_while(|(gain, _)| *gain > least) {
+                let is_apart = |[c, d]: &[usize; 2]| {
+                    2 * b.min(*d).saturating_sub(a.max(*c)) <= (b - a).min(d - c)
+                };
+                if count < STARTS && best.iter().all(is_apart) {
+                    best.push([a, b]);
+                    count += 1;
+                }
             }
         }
         best.into_iter()

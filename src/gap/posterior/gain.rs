@@ -148,29 +148,22 @@ impl<'a> Gains<'a> {
         self.products(&all, f64::INFINITY).iter().map(|(a, _)| a[(0, 0)]).collect()
     }
 
-    /// Gains of sums of the parts `from..to` of a piece whose columns are those of `count` parts, one
-    /// after another; parts after the last one are the first ones.
+    /// Gains of windows: sums of the parts `from..to` of a piece whose columns are those of `count` parts,
+    /// one after another; parts after the last one are the first ones. Rows below a frequency \[Hz\].
     #[must_use]
-    pub(in crate::gap) fn of_sums(
+    pub(in crate::gap) fn of_windows(
         &self,
         piece: &PieceRows,
         count: usize,
-        sums: &[[usize; 2]],
+        windows: &[[usize; 2]],
         below: f64,
     ) -> Vec<f64> {
-        let width = piece.prior.len() / count;
         let products = self.products(&[piece], below);
-        let Some((a, b)) = products.first() else { return Vec::new() };
-        let prior = &piece.prior[..width];
-        let gain = |[from, to]: &[usize; 2]| {
-            let mut sum = DMatrix::zeros(count * width, width);
-            for k in *from..*to {
-                sum.view_mut((width * (k % count), 0), (width, width)).fill_with_identity();
-            }
-            let of_sum = (sum.tr_mul(&(a * &sum)), sum.tr_mul(b));
-            best(&of_sum, prior, self.design.tunables.amplitude_spread)
-        };
-        sums.iter().map(gain).collect()
+        let Some(products) = products.first() else { return Vec::new() };
+        let sums = PartSums::new(products, count);
+        let prior = &piece.prior[..sums.width];
+        let spread = self.design.tunables.amplitude_spread;
+        windows.iter().map(|window| best(&sums.of(*window), prior, spread)).collect()
     }
 
     /// Gains of all pieces. What a shape does by itself counts as far as it helps: the right shape may be
@@ -184,6 +177,53 @@ impl<'a> Gains<'a> {
             all.iter().zip(pieces).map(|(of, piece)| most(of, piece, spread)).collect()
         };
         pieces.par_chunks(TOGETHER).flat_map_iter(gains).collect()
+    }
+}
+
+/// Sums of products over the first parts of a motion, taken twice one after the other.
+struct PartSums {
+    /// Columns of a part.
+    width: usize,
+    /// The sum over the parts before `(i, k)` is the block at `(i, k)`.
+    a: DMatrix<f64>,
+    b: DMatrix<f64>,
+}
+
+impl PartSums {
+    fn new((a, b): &(DMatrix<f64>, DVector<f64>), count: usize) -> PartSums {
+        let width = b.len() / count;
+        let n = 2 * count;
+        let mut sums = PartSums {
+            width,
+            a: DMatrix::zeros(width * (n + 1), width * (n + 1)),
+            b: DMatrix::zeros(width, n + 1),
+        };
+        for i in 0..n {
+            let at = width * (i % count);
+            let next = sums.b.column(i) + b.rows(at, width);
+            sums.b.set_column(i + 1, &next);
+            let mut row = DMatrix::zeros(width, width);
+            for k in 0..n {
+                row += a.view((at, width * (k % count)), (width, width));
+                let next = sums.block(i, k + 1) + &row;
+                sums.a
+                    .view_mut((width * (i + 1), width * (k + 1)), (width, width))
+                    .copy_from(&next);
+            }
+        }
+        sums
+    }
+
+    fn block(&self, i: usize, k: usize) -> DMatrix<f64> {
+        self.a.view((self.width * i, self.width * k), (self.width, self.width)).into_owned()
+    }
+
+    /// Products of a window.
+    fn of(&self, [from, to]: [usize; 2]) -> (DMatrix<f64>, DVector<f64>) {
+        let a = self.block(to, to) + self.block(from, from)
+            - self.block(from, to)
+            - self.block(to, from);
+        (a, self.b.column(to) - self.b.column(from))
     }
 }
 

@@ -40,7 +40,7 @@ pub(in crate::arm::effects) const RIPPLE: Effect = Effect {
 };
 
 /// Orders of gears and motors.
-const ORDERS: [f64; 2] = [2.0, 5000.0];
+const ORDERS: [f64; 2] = [5.0, 5000.0];
 
 /// The highest order that the sampling resolves.
 fn sampled(of: &Scale) -> f64 {

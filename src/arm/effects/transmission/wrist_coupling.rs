@@ -42,6 +42,7 @@ pub(in crate::arm::effects) const WRIST_COUPLING: Effect = Effect {
         "load_friction",
         "stribeck",
         "nonlinear_viscous",
+        "brake_drag",
     ],
     inspect: "bearings between the shafts of axes 5 and 6",
     experiment: ["--variant wrist", "axis 5 alone, 5 and 6 against each other"],
