@@ -149,10 +149,9 @@ impl Search<'_> {
         let start = Start::near(self.design, &hypothesis, [none.fit.known(), near.fit.known()]);
         let fit = fitted(self.design, hypothesis, start, steps)?;
         let cost: f64 = effects.iter().map(|of| of.cost).sum();
-        let brought: f64 = (0..fit.hypothesis.members.len()).map(|k| fit.brought_by(k)).sum();
-        let score =
-            fit.log_evidence - none.fit.log_evidence - cost - brought - self.beyond_usual(&fit)
-                + self.beyond_usual(&none.fit);
+        let gain = fit.log_evidence - none.fit.log_evidence;
+        let score = gain - gain.max(0.0) * fit.share_brought() - cost - self.beyond_usual(&fit)
+            + self.beyond_usual(&none.fit);
         Some(Found { effects, fit, score })
     }
 
@@ -176,12 +175,11 @@ impl Search<'_> {
         for _ in 0..ROUNDS_AT_MOST {
             let mut next = self.next(&none, &best);
             tried.extend(next.iter().map(Found::tried));
+            near.extend(next.iter().take(REFINED).cloned());
             next.retain(|of| of.score > best.score + self.design.tunables.least_nats);
             let is_finding = |of: &&Found| of.places() > best.places();
             let first = next.iter().find(is_finding).filter(|of| of.places() <= MOST).cloned();
             let more = first.or_else(|| self.with_everyday(&none, &best, &next));
-            next.truncate(REFINED);
-            near.append(&mut next);
             match more {
                 Some(more) => best = more,
                 None => break,

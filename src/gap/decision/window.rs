@@ -9,9 +9,14 @@ use crate::gap::data::Record;
 use crate::gap::design::{Design, PieceRows, Times, Whole};
 use crate::gap::posterior::Gains;
 
-/// Parts of a repetition at which windows begin and end, and their lengths in parts.
+/// Parts of a repetition at which windows begin and end, and those of the longest window: what acts for
+/// more than half of the time stops for a window.
 const PARTS: usize = 96;
-const LENGTHS: [usize; 11] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 40];
+const LONGEST: usize = PARTS / 2;
+/// Parts in which something can be seen to grow and fall.
+const LEAST_GROWING: usize = 6;
+/// Times that an interval is halved: to a millionth of a window.
+const HALVED: usize = 20;
 /// Windows from which the best one is looked for.
 const STARTS: usize = 2;
 /// Least gain of a window that is looked at further \[nats\].
@@ -41,7 +46,7 @@ impl Windows {
         let [begins, ends] = if closed { [0.0, first.duration()] } else { range(records) };
         let part = (ends - begins) / PARTS as f64;
         let period = if closed { ends } else { 0.0 };
-        let times = Times { begins, period, choices: PARTS * LENGTHS.len() };
+        let times = Times { begins, period, choices: PARTS * LONGEST };
         let parts = whole.parts(design, records, (part, PARTS), &times);
         Some(Windows { whole, part, times, parts })
     }
@@ -53,66 +58,118 @@ impl Windows {
         design: &Design,
         gains: &Gains<'_>,
     ) -> Vec<PieceRows> {
-        let within = |_: &PieceRows, shape: &[f64]| {
+        let within = |from: &PieceRows, shape: &[f64]| {
             let mut shape = shape.to_vec();
             let n = shape.len();
-            shape[n - 2] = shape[n - 2].max(shape[n - 3]);
-            if let Some((k, most)) = self.whole.rise() {
+            if let Some((k, most, share)) = self.whole.rise() {
                 shape[k] = shape[k].clamp(0.0, most);
+                // What grows more slowly lasts longer: half of it is there from and to the same times.
+                let [before, now] =
+                    [from.shape[k], shape[k]].map(|rise| half_of(|x| share(rise, x)));
+                let longer = 0.5 * ((1.0 - 2.0 * before) / (1.0 - 2.0 * now) - 1.0);
+                let more = longer * (shape[n - 2] - shape[n - 3]);
+                shape[n - 3] -= more;
+                shape[n - 2] += more;
+            }
+            shape[n - 2] = shape[n - 2].max(shape[n - 3] + self.part);
+            self.whole.within(design, records, shape, &self.times)
+        };
+        let n = self.parts.effect.coordinates.len();
+        let by = |coordinate, step| Move { coordinate, step, is_factor: false };
+        let lowest = lowest(records);
+        let at = |[start, end]: [f64; 2], rise: Option<(usize, f64)>| {
+            let mut shape = self.whole.shape([start, end], &self.times);
+            if let Some((k, value)) = rise {
+                shape[k] = value;
             }
             self.whole.within(design, records, shape, &self.times)
         };
-        let by = |coordinate, step| Move { coordinate, step, is_factor: false };
-        let climb = |window: [f64; 2]| {
-            let shape = self.whole.shape(window, &self.times);
-            let start = self.whole.within(design, records, shape, &self.times);
-            let n = start.shape.len();
+        let mut all = Vec::new();
+        for window in self.at_once(gains, [lowest, f64::INFINITY]) {
             let ends = [by(n - 3, 0.5 * self.part), by(n - 2, 0.5 * self.part)];
-            climbed(gains, &start, &ends, f64::INFINITY, &within)
-        };
-        let mut all: Vec<PieceRows> =
-            self.starts(gains, lowest(records)).into_iter().map(climb).collect();
-        // What is slow to rise begins at the best window of what is there at once.
-        let gain = |piece: &PieceRows| gains.of(piece, f64::INFINITY);
-        let best = all.iter().max_by(|a, b| gain(a).total_cmp(&gain(b)));
-        if let (Some(best), Some((k, most))) = (best, self.whole.rise()) {
-            let n = best.shape.len();
-            let moves = [by(n - 3, self.part), by(n - 2, self.part), by(k, 0.5 * most)];
-            all.push(climbed(gains, best, &moves, lowest(records), &within));
+            all.push(climbed(gains, &at(window, None), &ends, 2.0 * lowest, &within));
+        }
+        if let Some((k, most, share)) = self.whole.rise() {
+            for window in self.growing(gains, &|x| share(0.5 * most, x), lowest) {
+                // It has no sharp ends: they are looked for in larger steps.
+                let step = 0.1 * (window[1] - window[0]);
+                let moves = [by(k, 0.25 * most), by(n - 3, step), by(n - 2, step)];
+                let start = at(window, Some((k, 0.5 * most)));
+                all.push(climbed(gains, &start, &moves, 2.0 * lowest, &within));
+            }
         }
         all
     }
 
-    /// Windows that begin and end with parts and explain most, apart from each other: of those that the
-    /// low frequencies tell and of those that all do.
-    fn starts(&self, gains: &Gains<'_>, lowest: f64) -> Vec<[f64; 2]> {
-        let windows: Vec<[usize; 2]> = LENGTHS
-            .iter()
-            .flat_map(|length| (0..PARTS).map(move |begin| [begin, begin + length]))
-            .filter(|[_, end]| self.times.period > 0.0 || *end <= PARTS)
-            .collect();
+    /// The best windows in which an effect is there at once, of those that the low frequencies tell and of
+    /// those that all do \[s\].
+    fn at_once(&self, gains: &Gains<'_>, below: [f64; 2]) -> Vec<[f64; 2]> {
+        let mut best = Vec::new();
+        for below in below {
+            let gains = gains.of_windows(&self.parts, PARTS, below);
+            let all = (0..PARTS).flat_map(|from| {
+                let gains = gains.at_once(from, LONGEST.min(self.last() - from));
+                gains.into_iter().enumerate().map(move |(k, gain)| (gain, [from, from + k + 1]))
+            });
+            self.add_best(&mut best, all.collect());
+        }
+        self.times_of(&best)
+    }
+
+    /// The best windows in which an effect grows and falls with a share of the part of the window \[s\].
+    fn growing(&self, gains: &Gains<'_>, share: &dyn Fn(f64) -> f64, below: f64) -> Vec<[f64; 2]> {
+        let gains = gains.of_windows(&self.parts, PARTS, below);
+        let mut all = Vec::new();
+        for count in
+            (LEAST_GROWING..=LONGEST).filter(|count| count % (1 + count / LEAST_GROWING) == 0)
+        {
+            let part = |k: usize| share((k as f64 + 0.5) / count as f64);
+            let shares: Vec<f64> = (0..count).map(part).collect();
+            let froms = (0..PARTS).filter(|from| from + count <= self.last());
+            all.extend(froms.map(|from| (gains.of(from, &shares), [from, from + count])));
+        }
+        let mut best = Vec::new();
+        self.add_best(&mut best, all);
+        self.times_of(&best)
+    }
+
+    /// Adds the windows that explain most, apart from each other.
+    fn add_best(&self, best: &mut Vec<[usize; 2]>, mut all: Vec<(f64, [usize; 2])>) {
         let least = LEAST + (self.times.choices as f64).ln();
-        let mut best: Vec<[usize; 2]> = Vec::new();
-        for below in [lowest, f64::INFINITY] {
-            let of_windows = gains.of_windows(&self.parts, PARTS, &windows, below);
-            let mut all: Vec<(f64, [usize; 2])> =
-                of_windows.into_iter().zip(windows.iter().copied()).collect();
-            all.sort_by(|a, b| b.0.total_cmp(&a.0));
-            let mut count = 0;
-            for (_, [a, b]) in all.into_iter().take_while(|(gain, _)| *gain > least) {
-                let is_apart = |[c, d]: &[usize; 2]| {
-                    2 * b.min(*d).saturating_sub(a.max(*c)) <= (b - a).min(d - c)
-                };
-                if count < STARTS && best.iter().all(is_apart) {
-                    best.push([a, b]);
-                    count += 1;
-                }
+        all.retain(|(gain, _)| *gain > least);
+        all.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let most = best.len() + STARTS;
+        for (_, window) in all {
+            if best.len() < most && best.iter().all(|known| are_apart(*known, window)) {
+                best.push(window);
             }
         }
-        best.into_iter()
-            .map(|window| window.map(|k| self.times.begins + self.part * k as f64))
-            .collect()
     }
+
+    /// The last part at which a window may end: it may go on over the end of a period.
+    fn last(&self) -> usize {
+        if self.times.period > 0.0 { 2 * PARTS } else { PARTS }
+    }
+
+    fn times_of(&self, windows: &[[usize; 2]]) -> Vec<[f64; 2]> {
+        let time = |k: usize| self.times.begins + self.part * k as f64;
+        windows.iter().map(|window| window.map(time)).collect()
+    }
+}
+
+/// Whether two windows have less than half of the shorter one in common.
+fn are_apart([a, b]: [usize; 2], [c, d]: [usize; 2]) -> bool {
+    2 * b.min(d).saturating_sub(a.max(c)) <= (b - a).min(d - c)
+}
+
+/// The part of a window at which a share that grows from it to the middle is a half.
+fn half_of(share: impl Fn(f64) -> f64) -> f64 {
+    let (mut low, mut high) = (0.0, 0.5);
+    for _ in 0..HALVED {
+        let x = 0.5 * (low + high);
+        if share(x) < 0.5 { low = x } else { high = x }
+    }
+    0.5 * (low + high)
 }
 
 /// The first and the last time of records \[s\].

@@ -70,12 +70,13 @@ impl Whole {
         shape
     }
 
-    /// The place of the coordinate by which the effect grows in its window, with its largest value.
+    /// The place of the coordinate by which the effect grows in its window, its largest value, and the
+    /// share that acts, from the value and the part of the window that is over.
     #[must_use]
-    pub(in crate::gap) fn rise(&self) -> Option<(usize, f64)> {
+    pub(in crate::gap) fn rise(&self) -> Option<(usize, f64, fn(f64, f64) -> f64)> {
         let mut of = self.effect.coordinates.iter().enumerate();
         of.find_map(|(k, of)| match of.role {
-            Role::Rise { most, .. } => Some((k, most)),
+            Role::Rise { most, share } => Some((k, most, share)),
             _ => None,
         })
     }

@@ -161,18 +161,21 @@ impl Fit {
         self.evidence_of_columns(number, self.hypothesis.members[number].piece.own)
     }
 
-    /// What the columns gain by themselves that a member brings along: it is none of its own.
+    /// Share of the evidence of all members that the columns have by themselves that they bring along: it
+    /// is none of their own. At these sizes no member would be missed more than at its own ones, so that a
+    /// share counts, and no nats.
     #[must_use]
-    pub(in crate::gap) fn brought_by(&self, number: usize) -> f64 {
-        let piece = &self.hypothesis.members[number].piece;
-        if piece.own == piece.prior.len() {
-            return 0.0;
+    pub(in crate::gap) fn share_brought(&self) -> f64 {
+        let (mut all, mut brought) = (0.0, 0.0);
+        for (number, member) in self.hypothesis.members.iter().enumerate() {
+            let piece = &member.piece;
+            let of = |count: usize| self.evidence_of_columns(number, count);
+            if let (Some(with), Some(own)) = (of(piece.prior.len()), of(piece.own)) {
+                all += with.max(0.0);
+                brought += (with - own).max(0.0);
+            }
         }
-        let of = |count: usize| self.evidence_of_columns(number, count);
-        match (of(piece.prior.len()), of(piece.own)) {
-            (Some(all), Some(own)) => (all - own).max(0.0),
-            _ => 0.0,
-        }
+        if all > 0.0 { f64::min(brought / all, 1.0) } else { 0.0 }
     }
 
     /// The ratio of the densities of a member's first factors at 0, before and after (J. Dickey, Annals

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::fit::Fit;
 use super::reduced::variance;
+use super::windows::WindowGains;
 use crate::gap::design::{Design, PieceRows};
 
 /// A fit that answers what pieces would add.
@@ -148,22 +149,18 @@ impl<'a> Gains<'a> {
         self.products(&all, f64::INFINITY).iter().map(|(a, _)| a[(0, 0)]).collect()
     }
 
-    /// Gains of windows: sums of the parts `from..to` of a piece whose columns are those of `count` parts,
-    /// one after another; parts after the last one are the first ones. Rows below a frequency \[Hz\].
+    /// Gains of windows of a piece whose columns are those of `count` parts, one after another; rows below
+    /// a frequency \[Hz\].
     #[must_use]
-    pub(in crate::gap) fn of_windows(
+    pub(in crate::gap) fn of_windows<'b>(
         &self,
-        piece: &PieceRows,
+        piece: &'b PieceRows,
         count: usize,
-        windows: &[[usize; 2]],
         below: f64,
-    ) -> Vec<f64> {
-        let products = self.products(&[piece], below);
-        let Some(products) = products.first() else { return Vec::new() };
-        let sums = PartSums::new(products, count);
-        let prior = &piece.prior[..sums.width];
-        let spread = self.design.tunables.amplitude_spread;
-        windows.iter().map(|window| best(&sums.of(*window), prior, spread)).collect()
+    ) -> WindowGains<'b> {
+        let prior = &piece.prior[..piece.prior.len() / count];
+        let products = self.products(&[piece], below).remove(0);
+        WindowGains::new(products, prior, self.design.tunables.amplitude_spread)
     }
 
     /// Gains of all pieces. What a shape does by itself counts as far as it helps: the right shape may be
@@ -177,53 +174,6 @@ impl<'a> Gains<'a> {
             all.iter().zip(pieces).map(|(of, piece)| most(of, piece, spread)).collect()
         };
         pieces.par_chunks(TOGETHER).flat_map_iter(gains).collect()
-    }
-}
-
-/// Sums of products over the first parts of a motion, taken twice one after the other.
-struct PartSums {
-    /// Columns of a part.
-    width: usize,
-    /// The sum over the parts before `(i, k)` is the block at `(i, k)`.
-    a: DMatrix<f64>,
-    b: DMatrix<f64>,
-}
-
-impl PartSums {
-    fn new((a, b): &(DMatrix<f64>, DVector<f64>), count: usize) -> PartSums {
-        let width = b.len() / count;
-        let n = 2 * count;
-        let mut sums = PartSums {
-            width,
-            a: DMatrix::zeros(width * (n + 1), width * (n + 1)),
-            b: DMatrix::zeros(width, n + 1),
-        };
-        for i in 0..n {
-            let at = width * (i % count);
-            let next = sums.b.column(i) + b.rows(at, width);
-            sums.b.set_column(i + 1, &next);
-            let mut row = DMatrix::zeros(width, width);
-            for k in 0..n {
-                row += a.view((at, width * (k % count)), (width, width));
-                let next = sums.block(i, k + 1) + &row;
-                sums.a
-                    .view_mut((width * (i + 1), width * (k + 1)), (width, width))
-                    .copy_from(&next);
-            }
-        }
-        sums
-    }
-
-    fn block(&self, i: usize, k: usize) -> DMatrix<f64> {
-        self.a.view((self.width * i, self.width * k), (self.width, self.width)).into_owned()
-    }
-
-    /// Products of a window.
-    fn of(&self, [from, to]: [usize; 2]) -> (DMatrix<f64>, DVector<f64>) {
-        let a = self.block(to, to) + self.block(from, from)
-            - self.block(from, to)
-            - self.block(to, from);
-        (a, self.b.column(to) - self.b.column(from))
     }
 }
 
@@ -243,7 +193,11 @@ fn most(products: &(DMatrix<f64>, DVector<f64>), piece: &PieceRows, spread: f64)
 }
 
 /// The gain of a piece over the amplitudes that are tried.
-fn best((a, b): &(DMatrix<f64>, DVector<f64>), prior: &[(f64, f64)], spread: f64) -> f64 {
+pub(super) fn best(
+    (a, b): &(DMatrix<f64>, DVector<f64>),
+    prior: &[(f64, f64)],
+    spread: f64,
+) -> f64 {
     let is_fixed = prior.iter().any(|(mean, _)| *mean != 0.0);
     let tried: &[f64] = if is_fixed { &[1.0] } else { &TRIED };
     let gain =

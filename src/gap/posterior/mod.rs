@@ -15,6 +15,7 @@ mod reduced;
 mod shares;
 mod sizes;
 mod start;
+mod windows;
 
 pub(in crate::gap) use evidence::Evidence;
 pub(in crate::gap) use fit::{Fit, fitted, fitted_as_written};
