@@ -27,6 +27,8 @@ pub(super) struct Windows {
     whole: Whole,
     /// Duration of a part \[s\].
     part: f64,
+    /// Duration of the shortest window \[s\]: a part, and what the frequencies of the logs resolve.
+    shortest: f64,
     times: Times,
     /// What acts in each part.
     parts: PieceRows,
@@ -48,7 +50,8 @@ impl Windows {
         let period = if closed { ends } else { 0.0 };
         let times = Times { begins, period, choices: PARTS * LONGEST };
         let parts = whole.parts(design, records, (part, PARTS), &times);
-        Some(Windows { whole, part, times, parts })
+        let resolved = first.duration() / first.bins().max(1) as f64;
+        Some(Windows { whole, part, shortest: part.max(resolved), times, parts })
     }
 
     /// The best windows beside a fit.
@@ -71,7 +74,7 @@ impl Windows {
                 shape[n - 3] -= more;
                 shape[n - 2] += more;
             }
-            shape[n - 2] = shape[n - 2].max(shape[n - 3] + self.part);
+            shape[n - 2] = shape[n - 2].max(shape[n - 3] + self.shortest);
             self.whole.within(design, records, shape, &self.times)
         };
         let n = self.parts.effect.coordinates.len();
@@ -85,7 +88,7 @@ impl Windows {
             self.whole.within(design, records, shape, &self.times)
         };
         let mut all = Vec::new();
-        for window in self.at_once(gains, [lowest, f64::INFINITY]) {
+        for window in self.at_once(gains, lowest) {
             let ends = [by(n - 3, 0.5 * self.part), by(n - 2, 0.5 * self.part)];
             all.push(climbed(gains, &at(window, None), &ends, 2.0 * lowest, &within));
         }
@@ -101,22 +104,18 @@ impl Windows {
         all
     }
 
-    /// The best windows in which an effect is there at once, of those that the low frequencies tell and of
-    /// those that all do \[s\].
-    fn at_once(&self, gains: &Gains<'_>, below: [f64; 2]) -> Vec<[f64; 2]> {
-        let mut best = Vec::new();
-        for below in below {
-            let gains = gains.of_windows(&self.parts, PARTS, below);
-            let all = (0..PARTS).flat_map(|from| {
-                let gains = gains.at_once(from, LONGEST.min(self.last() - from));
-                gains.into_iter().enumerate().map(move |(k, gain)| (gain, [from, from + k + 1]))
-            });
-            self.add_best(&mut best, all.collect());
-        }
-        self.times_of(&best)
+    /// The best windows in which an effect is there at once, by the frequencies `below` \[Hz\]; in s.
+    fn at_once(&self, gains: &Gains<'_>, below: f64) -> Vec<[f64; 2]> {
+        let gains = gains.of_windows(&self.parts, PARTS, below);
+        let all = (0..PARTS).flat_map(|from| {
+            let gains = gains.at_once(from, LONGEST.min(self.last() - from));
+            gains.into_iter().enumerate().map(move |(k, gain)| (gain, [from, from + k + 1]))
+        });
+        self.starts(all.collect())
     }
 
-    /// The best windows in which an effect grows and falls with a share of the part of the window \[s\].
+    /// The best windows in which an effect grows and falls with a share of the part of the
+    /// window \[s\].
     fn growing(&self, gains: &Gains<'_>, share: &dyn Fn(f64) -> f64, below: f64) -> Vec<[f64; 2]> {
         let gains = gains.of_windows(&self.parts, PARTS, below);
         let mut all = Vec::new();
@@ -128,32 +127,27 @@ impl Windows {
             let froms = (0..PARTS).filter(|from| from + count <= self.last());
             all.extend(froms.map(|from| (gains.of(from, &shares), [from, from + count])));
         }
-        let mut best = Vec::new();
-        self.add_best(&mut best, all);
-        self.times_of(&best)
+        self.starts(all)
     }
 
-    /// Adds the windows that explain most, apart from each other.
-    fn add_best(&self, best: &mut Vec<[usize; 2]>, mut all: Vec<(f64, [usize; 2])>) {
+    /// The windows that explain most, apart from each other \[s\].
+    fn starts(&self, mut all: Vec<(f64, [usize; 2])>) -> Vec<[f64; 2]> {
         let least = LEAST + (self.times.choices as f64).ln();
         all.retain(|(gain, _)| *gain > least);
         all.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let most = best.len() + STARTS;
+        let mut best: Vec<[usize; 2]> = Vec::new();
         for (_, window) in all {
-            if best.len() < most && best.iter().all(|known| are_apart(*known, window)) {
+            if best.len() < STARTS && best.iter().all(|known| are_apart(*known, window)) {
                 best.push(window);
             }
         }
+        let time = |k: usize| self.times.begins + self.part * k as f64;
+        best.into_iter().map(|window| window.map(time)).collect()
     }
 
     /// The last part at which a window may end: it may go on over the end of a period.
     fn last(&self) -> usize {
         if self.times.period > 0.0 { 2 * PARTS } else { PARTS }
-    }
-
-    fn times_of(&self, windows: &[[usize; 2]]) -> Vec<[f64; 2]> {
-        let time = |k: usize| self.times.begins + self.part * k as f64;
-        windows.iter().map(|window| window.map(time)).collect()
     }
 }
 
