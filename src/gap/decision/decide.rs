@@ -6,8 +6,8 @@ use super::finding::{Estimated, Finding, Remainder, Verdict};
 use super::found::{Candidate, Found, Tried};
 use super::search::{BEYOND, Search};
 use super::trail::{Entry, Gate};
-use crate::arm::effects::{Effect, Nature, Scope};
-use crate::gap::data::RecordKind;
+use crate::arm::effects::{Acts, Effect, Nature, Scope};
+use crate::gap::data::{Record, RecordKind};
 use crate::gap::design::Set;
 use crate::gap::model::Fitted;
 use crate::gap::trust::Trust;
@@ -120,7 +120,9 @@ pub(in crate::gap) fn decide(
             // The more any error is beyond a usual one, the less it leaves to judge by.
             let over = (left / tunables.usual_error)
                 .clamp(tunables.over_everyday, tunables.over_unexplained);
-            let least = least.max(over * left);
+            let noise = found.fit.noise(search.design, joint.unwrap_or(piece.most));
+            let once = SIGNIFICANT * noise * share_of_time(search, &piece.fitted).sqrt();
+            let least = least.max(over * left).max(once);
             let confused = beside_confused(search, found, &weighed, [number, k]);
             let is_quiet = !noisy.contains(&joint.unwrap_or(piece.most));
             let mut there = is_quiet
@@ -234,6 +236,18 @@ fn beside_confused(
         .map(|joint| found.fit.correlation(search.design, members.clone(), joint))
         .fold(0.0, f64::min);
     Some(if least < TAKES_BACK && ratio < 1.0 { -ratio } else { ratio })
+}
+
+/// Share of the time of a log in which something acts once; 0 of what acts always or again: that is not
+/// mistaken for noise, of which some is large somewhere.
+fn share_of_time(search: &Search<'_>, fitted: &Fitted) -> f64 {
+    match (fitted.effect.acts, fitted.coordinates[..].last_chunk()) {
+        (Acts::InWindow, Some([start, end, 0.0])) => {
+            let all: f64 = search.records.iter().map(Record::duration).sum();
+            (end - start) / all
+        }
+        _ => 0.0,
+    }
 }
 
 /// Parameters of an effect at its joints; with several joints their names end with the joint.
