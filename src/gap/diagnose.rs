@@ -218,8 +218,11 @@ fn graded(
     let mut found = found.clone();
     let mut trail = Vec::new();
     let mut withdrawn = Vec::new();
+    let refit = &models.refit.applied;
+    let missed = shrink(held, [models.nominal, refit, refit]).joints;
+    let missed: Vec<f64> = missed.iter().map(|of| of.refit).collect();
     loop {
-        let mut decision = decide(search, none, &found, tried);
+        let mut decision = decide(search, none, &found, tried, &missed);
         decision.asserted = search.shaped_as_written(&decision.asserted);
         let of =
             |best: &Improved| shrink(held, [models.nominal, &models.refit.applied, &best.applied]);

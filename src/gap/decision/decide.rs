@@ -73,13 +73,15 @@ struct Decided {
     candidates: Vec<Finding>,
 }
 
-/// Decides on what a search found.
+/// Decides on what a search found. `missed` is what the refitted model misses in held-out data, by joint
+/// \[Nm\].
 #[must_use]
 pub(in crate::gap) fn decide(
     search: &Search<'_>,
     none: &Found,
     found: &Found,
     tried: &[Tried],
+    missed: &[f64],
 ) -> Decision {
     let tunables = &search.design.tunables;
     let has_baseline = search.records.iter().any(|record| record.kind == RecordKind::Before);
@@ -90,7 +92,6 @@ pub(in crate::gap) fn decide(
         .into_par_iter()
         .map(|k| weigh(search, none, found, k, tried))
         .collect();
-    let least = search.design.least_share();
     let everyday: Vec<f64> = (0..n).map(|j| found.fit.everyday(search.design, j)).collect();
     let left = |fit: &Found, joint: usize| {
         if has_baseline {
@@ -116,15 +117,10 @@ pub(in crate::gap) fn decide(
         for (k, piece) in of.pieces.iter().enumerate() {
             let joint = piece.fitted.joint;
             let at = joint.map_or(id.to_owned(), |joint| format!("{id} of joint {}", joint + 1));
-            let left = left(found, joint.unwrap_or(piece.most));
-            // The more any error is beyond a usual one, the less it leaves to judge by.
-            let over = (left / tunables.usual_error)
-                .clamp(tunables.over_everyday, tunables.over_unexplained);
-            let noise = found.fit.noise(search.design, joint.unwrap_or(piece.most));
-            let once = SIGNIFICANT * noise * share_of_time(search, &piece.fitted).sqrt();
-            let least = least.max(over * left).max(once);
+            let place = joint.unwrap_or(piece.most);
+            let least = least_size(search, piece, left(found, place), missed[place]);
             let confused = beside_confused(search, found, &weighed, [number, k]);
-            let is_quiet = !noisy.contains(&joint.unwrap_or(piece.most));
+            let is_quiet = !noisy.contains(&place);
             let mut there = is_quiet
                 & ask(Gate::Size, at.clone(), piece.share, least)
                 & ask(Gate::Bounds, at.clone(), piece.fitted.beyond_bounds(), BEYOND);
@@ -238,15 +234,23 @@ fn beside_confused(
     Some(if least < TAKES_BACK && ratio < 1.0 { -ratio } else { ratio })
 }
 
-/// Share of the time of a log in which something acts once; 0 of what acts always or again: that is not
-/// mistaken for noise, of which some is large somewhere.
-fn share_of_time(search: &Search<'_>, fitted: &Fitted) -> f64 {
-    match (fitted.effect.acts, fitted.coordinates[..].last_chunk()) {
+/// Least share of a joint's torque that is no everyday error, where one of a share `left` is left, and
+/// held-out data is `missed` \[Nm\].
+fn least_size(search: &Search<'_>, piece: &WeighedPiece, left: f64, missed: f64) -> f64 {
+    let tunables = &search.design.tunables;
+    // The more any error is beyond a usual one, the less it leaves to judge by.
+    let over =
+        (left / tunables.usual_error).clamp(tunables.over_everyday, tunables.over_unexplained);
+    let least = search.design.least_share().max(over * left);
+    // What acts once has to stand out while it acts: no other log can confirm it, and some error is large
+    // somewhere.
+    match (piece.fitted.effect.acts, piece.fitted.coordinates[..].last_chunk()) {
         (Acts::InWindow, Some([start, end, 0.0])) => {
             let all: f64 = search.records.iter().map(Record::duration).sum();
-            (end - start) / all
+            let torque = search.design.joints[piece.most].torque;
+            least.max(SIGNIFICANT * missed / torque * ((end - start) / all).sqrt())
         }
-        _ => 0.0,
+        _ => least,
     }
 }
 

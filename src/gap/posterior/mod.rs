@@ -6,11 +6,13 @@
 //! groups of everyday errors maximise the marginal likelihood times their prior (empirical Bayes;
 //! D. `MacKay`, Bayesian interpolation, Neural Computation 4, 1992).
 
+mod amplitude;
 mod blocked;
 mod evidence;
 mod fit;
 mod gain;
 mod hypothesis;
+mod members;
 mod reduced;
 mod shares;
 mod sizes;

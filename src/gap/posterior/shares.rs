@@ -5,7 +5,6 @@ use std::ops::Range;
 use nalgebra::{Cholesky, DVector};
 
 use super::fit::Fit;
-use super::sizes::NOISE;
 use crate::arm::effects::{Acts, Variable};
 use crate::gap::design::{Cell, Design, Group, JointDesign, Set};
 
@@ -61,13 +60,6 @@ impl Fit {
         joint: usize,
     ) -> f64 {
         self.product(design, [members.clone(), members], joint).sqrt()
-    }
-
-    /// Share of a joint's torque that the noise has in logs that do not repeat: they do not show it.
-    #[must_use]
-    pub(in crate::gap) fn noise(&self, design: &Design, joint: usize) -> f64 {
-        let is_hidden = design.joints[joint].cells.iter().any(|cell| cell.white > 0.0);
-        if is_hidden { self.sizes[joint].error[NOISE].value } else { 0.0 }
     }
 
     /// Whether a member's share of some joint's torque is that of a finding.

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DMatrixView, DVector, DVectorView};
 
-use super::gain::best;
+use super::amplitude::best;
 
 /// Gains of what acts in some parts of a motion.
 pub(in crate::gap) struct WindowGains<'a> {
