@@ -6,7 +6,7 @@
 use super::shape::{Move, climbed, lowest};
 use crate::arm::effects::Effect;
 use crate::gap::data::Record;
-use crate::gap::design::{Design, PieceRows, Times, Whole};
+use crate::gap::design::{Design, PieceRows, Rise, Times, Whole};
 use crate::gap::posterior::Gains;
 
 /// Parts of a repetition at which windows begin and end, and those of the longest window: what acts for
@@ -64,7 +64,7 @@ impl Windows {
         let within = |from: &PieceRows, shape: &[f64]| {
             let mut shape = shape.to_vec();
             let n = shape.len();
-            if let Some((k, most, share)) = self.whole.rise() {
+            if let Some(Rise { coordinate: k, most, share }) = self.whole.rise() {
                 shape[k] = shape[k].clamp(0.0, most);
                 // What grows more slowly lasts longer: half of it is there from and to the same times.
                 let [before, now] =
@@ -92,7 +92,7 @@ impl Windows {
             let ends = [by(n - 3, 0.5 * self.part), by(n - 2, 0.5 * self.part)];
             all.push(climbed(gains, &at(window, None), &ends, 2.0 * lowest, &within));
         }
-        if let Some((k, most, share)) = self.whole.rise() {
+        if let Some(Rise { coordinate: k, most, share }) = self.whole.rise() {
             for window in self.growing(gains, &|x| share(0.5 * most, x), lowest) {
                 // It has no sharp ends: they are looked for in larger steps.
                 let step = 0.1 * (window[1] - window[0]);

@@ -22,6 +22,6 @@ pub(in crate::gap) use everyday::Group;
 pub(in crate::gap) use joint::{Cell, JointDesign};
 pub(in crate::gap) use packed::Packed;
 pub(in crate::gap) use parameters::Parameters;
-pub(in crate::gap) use piece::{PieceRows, Times, Whole, link_pieces, piece_at, piece_rows};
+pub(in crate::gap) use piece::{PieceRows, Rise, Times, Whole, link_pieces, piece_at, piece_rows};
 pub(in crate::gap) use problem::Design;
 pub(in crate::gap) use set::Set;

@@ -70,13 +70,12 @@ impl Whole {
         shape
     }
 
-    /// The place of the coordinate by which the effect grows in its window, its largest value, and the
-    /// share that acts, from the value and the part of the window that is over.
+    /// How the effect grows in its window, where it may.
     #[must_use]
-    pub(in crate::gap) fn rise(&self) -> Option<(usize, f64, fn(f64, f64) -> f64)> {
+    pub(in crate::gap) fn rise(&self) -> Option<Rise> {
         let mut of = self.effect.coordinates.iter().enumerate();
-        of.find_map(|(k, of)| match of.role {
-            Role::Rise { most, share } => Some((k, most, share)),
+        of.find_map(|(coordinate, of)| match of.role {
+            Role::Rise { most, share } => Some(Rise { coordinate, most, share }),
             _ => None,
         })
     }
@@ -139,6 +138,16 @@ impl Whole {
         let piece = Piece { joint: self.joint, shape, choices: times.choices, columns };
         to_rows(design, records, self.effect, piece)
     }
+}
+
+/// How an effect grows in its window.
+pub(in crate::gap) struct Rise {
+    /// The place of its coordinate.
+    pub coordinate: usize,
+    /// The largest value.
+    pub most: f64,
+    /// The share that acts, from the value and the part of the window that is over.
+    pub share: fn(f64, f64) -> f64,
 }
 
 /// How windows come again.
