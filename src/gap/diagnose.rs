@@ -3,7 +3,7 @@
 use super::data::{Record, RecordKind};
 use super::decision::{
     Candidate, Decision, Finding, Found, Gate, Search, Searched, Tried, Verdict, decide,
-    may_name_parameters,
+    may_name_parameters, polished,
 };
 use super::design::{Design, PieceRows};
 use super::diagnosis::Diagnosis;
@@ -138,7 +138,8 @@ fn diagnose_telling(
     effects.retain(|effect| !effect.coordinates.is_empty());
     let search = Search::new(&train, &design, &effects);
     let Some(none) = Search::none_of(&design) else { return Diagnosis::failed(model, held) };
-    let Searched { none, best: found, tried, near } = search.best(none);
+    let Searched { none, best, tried, near } = search.best(none);
+    let found = polished(&search, &none, best);
     tell(Phase::Decision);
     let plain = refitted(believed, (&design, &train));
     let refit = turned.as_ref().map_or_else(|| plain.clone(), |of| of.added_to(&plain));
