@@ -72,8 +72,8 @@ fn the_json_has_the_fields_of_the_contract() {
     // The proposed next experiment is a valid command.
     if let Some(command) = value["next_experiment"]["command"].as_str() {
         let words: Vec<&str> = command.split(' ').skip(1).collect();
-        let message = stderr(&joulepath(&[&words[..], &["--seed", "none"]].concat()));
-        assert!(message.contains("--seed"), "{command}: {message}");
+        let message = stderr(&joulepath(&[&words[..], &["--plane", "none"]].concat()));
+        assert!(message.contains("--plane none"), "{command}: {message}");
     }
     // The written model is complete for predictions.
     run(&["predict", "--robot", &out, "--log", &held, "--quiet"]);
@@ -194,6 +194,7 @@ fn wrong_input_is_refused() {
         (vec!["--robot", &robot, "--log", &log, "--effects", "stribek"], "stribeck"),
         (vec!["--robot", &robot, "--log", &log, "--period", "0"], "more than 0"),
         (vec!["--robot", &robot, "--log", "missing.csv"], "cannot read"),
+        (vec!["--robot", &robot, "--log", &log, "--plane", "0,0,1,0"], "add --next DIR"),
         (vec!["--robot", &robot, "--log", &packed], "packed: give it as CSV"),
         (vec!["--robot", &robot, "--log", &binary], "no text: give it as CSV"),
         (vec!["--robot", &robot, "--log", &itself], "this is a folder"),

@@ -59,6 +59,7 @@ fn page() -> String {
                     effect.confused.iter().map(|id| format!("`{id}`")).collect();
                 let _ = writeln!(out, "\nConfused with {}.", list.join(", "));
             }
+            let _ = writeln!(out, "\nInspect {}.", effect.inspect);
             let [options, why] = effect.experiment;
             if !why.is_empty() {
                 let with = if options.is_empty() {

@@ -9,7 +9,7 @@ use command::{IRB1600 as ROBOT, json, refused, rows};
 use joulepath::arm::dynamics::Load;
 use joulepath::arm::kinematics::{Body, KeepOut, Obstacle, Plane, fk};
 use joulepath::arm::robot::find;
-use joulepath::learn::excite::{Design, Focus, random_feasible};
+use joulepath::learn::excite::{Design, Designed, Focus, STEP, State, design_for, random_feasible};
 use joulepath::rapid::syntax;
 use nalgebra::{Point3, Vector3};
 use serde_json::Value;
@@ -34,6 +34,46 @@ fn assert_valid_rapid(folder: &tempfile::TempDir) {
         assert!(parse.tolerances.is_empty(), "{name}: {:?}", parse.tolerances);
     }
 }
+
+/// A search for any worth finds motions that are worth more, within the limits.
+#[test]
+fn motions_are_found_for_any_worth() {
+    let model = find(ROBOT).unwrap();
+    let design = Design {
+        focus: Focus::All,
+        base_frequency: 0.1,
+        harmonics: vec![1, 3, 7],
+        speed_share: 0.8,
+        obstacles: vec![Obstacle::Plane(Plane { normal: Vector3::z(), distance: 0.0 })],
+        tool: Vector3::zeros(),
+        load: Load::none(),
+        seed: 1,
+    };
+    // Mean square of the rate of joint 5.
+    let worth = |states: &[State]| {
+        states.iter().map(|of| of[1][4].powi(2)).sum::<f64>() / states.len() as f64
+    };
+    let wanted = design_for(&model, &design, &worth, &|_, _| {}).unwrap();
+    let plain = design_for(&model, &design, &|_| 0.0, &|_, _| {}).unwrap();
+    // That of one harmonic at the limit of the rate.
+    let limit = 0.8 * model.limits.velocity.as_ref().unwrap()[4];
+    let share = |found: &Designed| {
+        let count = (found.series.period() / STEP).round() as usize;
+        worth(&found.series.sampled(count)) / (0.5 * limit * limit)
+    };
+    assert!(share(&wanted) > REACHED, "{}", share(&wanted));
+    // A search without a worth does not get there.
+    assert!(share(&plain) < REACHED, "{}", share(&plain));
+    for found in [wanted, plain] {
+        let ratios = found.checked.ratios;
+        let largest = [ratios.position, ratios.velocity / 0.8, ratios.acceleration, ratios.torque];
+        assert!(largest.iter().all(|ratio| *ratio <= 1.0), "{ratios:?}");
+        assert!(found.checked.to_obstacles >= 0.0 && found.checked.to_itself >= 0.0);
+    }
+}
+
+/// Share of the largest mean square of a rate that a search for it has to reach.
+const REACHED: f64 = 0.8;
 
 #[test]
 fn the_motion_determines_all_parameters_within_all_limits() {

@@ -2,13 +2,15 @@
 
 use super::data::{Record, RecordKind};
 use super::decision::{
-    Candidate, Decision, Finding, Found, Gate, Search, Tried, Verdict, decide, may_name_parameters,
+    Candidate, Decision, Finding, Found, Gate, Search, Searched, Tried, Verdict, decide,
+    may_name_parameters,
 };
 use super::design::{Design, PieceRows};
 use super::diagnosis::Diagnosis;
 use super::grade::{JointGap, Shrink, budget, places, places_missed, shrink};
 use super::model::{Improved, written};
 use super::phase::Phase;
+use super::rivals::Rivals;
 use super::sign::{Turned, is_opposite};
 use super::trust::Trust;
 use super::tunables::Tunables;
@@ -93,7 +95,7 @@ fn robot_of(
     // Robots warm up differently each day.
     let effects = nameable(&records, settings).into_iter().filter(|of| of.acts != Acts::OverTime);
     let search = Search::new(&records, &design, &effects.collect::<Vec<_>>());
-    let (none, found, tried) = search.best(none);
+    let Searched { none, best: found, tried, .. } = search.best(none);
     let models = Models { nominal: model, believed: model, refit: &refit, turned: None };
     let Graded { decision, best, .. } = graded(&search, [&none, &found], &tried, &held, &models);
     (!decision.effects.is_empty()).then_some((best, decision.effects))
@@ -136,7 +138,7 @@ fn diagnose_telling(
     effects.retain(|effect| !effect.coordinates.is_empty());
     let search = Search::new(&train, &design, &effects);
     let Some(none) = Search::none_of(&design) else { return Diagnosis::failed(model, held) };
-    let (none, found, tried) = search.best(none);
+    let Searched { none, best: found, tried, near } = search.best(none);
     tell(Phase::Decision);
     let plain = refitted(believed, (&design, &train));
     let refit = turned.as_ref().map_or_else(|| plain.clone(), |of| of.added_to(&plain));
@@ -162,6 +164,7 @@ fn diagnose_telling(
         decision.verdict = Verdict::NoGap;
     }
     let ids: Vec<&'static str> = decision.effects.iter().map(|of| of.effect.id).collect();
+    let rivals = Rivals::new([believed, &refit.applied], &search, (&none, near), settings.trust);
     let places = if ids.is_empty() && decision.verdict == Verdict::Unknown {
         places_missed(&train, &refit)
     } else {
@@ -182,6 +185,7 @@ fn diagnose_telling(
         reasons,
         channels: Vec::new(),
         before: Vec::new(),
+        rivals: Some(rivals),
     }
 }
 
@@ -214,8 +218,11 @@ fn graded(
     let mut found = found.clone();
     let mut trail = Vec::new();
     let mut withdrawn = Vec::new();
+    let refit = &models.refit.applied;
+    let missed = shrink(held, [models.nominal, refit, refit]).joints;
+    let missed: Vec<f64> = missed.iter().map(|of| of.refit).collect();
     loop {
-        let mut decision = decide(search, none, &found, tried);
+        let mut decision = decide(search, none, &found, tried, &missed);
         decision.asserted = search.shaped_as_written(&decision.asserted);
         let of =
             |best: &Improved| shrink(held, [models.nominal, &models.refit.applied, &best.applied]);
@@ -305,7 +312,7 @@ impl Models<'_> {
 fn left_at_most(effect: &Effect, tunables: &Tunables) -> f64 {
     match (effect.nature, effect.acts) {
         (Nature::Law, Acts::Always | Acts::AfterReversals) => tunables.left_in_heldout,
-        // Robots warm up differently each day; other links are no finding.
+        // Robots warm up differently each day; the refitted model has the parameters, too.
         (Nature::Law, Acts::OverTime) | (Nature::Parameter | Nature::Parameters, _) => 1.0,
         // A window that does not come again leaves other logs as they are.
         (Nature::Law, Acts::InWindow) => 1.0 + NO_WORSE,

@@ -4,11 +4,16 @@ use crate::arm::effects::Subject;
 use crate::arm::robot::Model;
 
 use super::data::Record;
-use super::decision::{Entry, Finding, Place, Remainder, Verdict, asserted};
+use super::decision::{Entry, Finding, Gate, Place, Remainder, Verdict, of_odds};
 use super::grade::{Budget, Shrink, shrink};
 use super::model::Improved;
 use super::motion::RunFound;
 use super::power::PowerFound;
+use super::rivals::Rivals;
+
+/// Probability from which on an effect is sure, and below which it is none.
+const SURE: f64 = 0.8;
+const POSSIBLE: f64 = 0.2;
 
 /// A diagnosis of torques.
 #[derive(Clone)]
@@ -41,6 +46,8 @@ pub struct Diagnosis {
     pub before: Vec<Finding>,
     /// Rms gaps of other channels: name, unit; noise, before, after.
     pub channels: Vec<(&'static str, &'static str, [f64; 3])>,
+    /// Explanations of the torques that a further motion may tell apart.
+    pub rivals: Option<Rivals>,
 }
 
 impl Diagnosis {
@@ -63,6 +70,7 @@ impl Diagnosis {
             reasons: Vec::new(),
             channels: Vec::new(),
             before: Vec::new(),
+            rivals: None,
         }
     }
 
@@ -73,6 +81,29 @@ impl Diagnosis {
             shrink: shrink(held, [model, model, model]),
             reasons: vec!["the logs cannot be compared with the model".to_owned()],
             ..Diagnosis::without_torques(model)
+        }
+    }
+
+    /// Whether a further motion is asked for: nothing is known, or not for sure.
+    #[must_use]
+    pub fn is_open(&self) -> bool {
+        let unsure = |of: &Finding| of.class.len() > 1 || of.probability(true) < SURE;
+        // What is too small to be a finding is no question.
+        let is_large = |of: &Finding| {
+            self.trail.iter().any(|entry| {
+                entry.gate == Gate::Size
+                    && entry.passed
+                    && entry.hypothesis.starts_with(of.effect.id)
+            })
+        };
+        let considered = |of: &Finding| of.probability(false) > POSSIBLE && is_large(of);
+        match self.verdict {
+            Verdict::Unknown | Verdict::Partial | Verdict::NotSeparable | Verdict::NotExcited => {
+                true
+            }
+            Verdict::Effect => self.effects.iter().any(unsure),
+            Verdict::ParametersOnly => self.candidates.iter().any(considered),
+            Verdict::NoGap => false,
         }
     }
 
@@ -89,7 +120,7 @@ impl Diagnosis {
         for of in effects {
             self.effects.push(Finding {
                 class: of.class.clone(),
-                probability: asserted(of.nats),
+                inclusion: of_odds(of.nats),
                 parameters: of.parameters.clone(),
                 ..Finding::alone(of.effect, of.joint.into_iter().collect(), of.nats)
             });
@@ -103,7 +134,7 @@ impl Diagnosis {
         for of in &found.effects {
             self.effects.push(Finding {
                 class: of.class.clone(),
-                probability: asserted(of.nats),
+                inclusion: of_odds(of.nats),
                 parameters: of.parameters.clone(),
                 ..Finding::alone(of.effect, Vec::new(), of.nats)
             });

@@ -15,12 +15,13 @@ mod motion;
 mod phase;
 mod posterior;
 mod power;
+mod rivals;
 mod sign;
 mod trust;
 mod tunables;
 
 pub use data::{Record, RecordKind, common_factor};
-pub use decision::{Entry, Estimated, Finding, Gate, Place, Remainder, Verdict};
+pub use decision::{Calibration, Entry, Estimated, Finding, Gate, Place, Remainder, Verdict};
 
 #[cfg(feature = "internals")]
 pub use diagnose::diagnose;
@@ -34,5 +35,6 @@ pub use model::{Fitted, Improved};
 pub use motion::{Run, RunEffect, RunFound, diagnose_runs};
 pub use phase::Phase;
 pub use power::{PowerEffect, PowerFound, Powers, diagnose_power};
+pub use rivals::{Rival, Rivals, Separation};
 pub use trust::Trust;
 pub use tunables::{Tunable, Tunables};

@@ -30,7 +30,9 @@ const ERROR: f64 = 0.005;
 const LEAST_SIZE: f64 = 0.01;
 /// What an effect changes before anything is measured, of the power.
 const PRIOR: f64 = 0.1;
-/// Effects that are the same while a robot moves.
+/// Rate below which a joint rests \[rad/s\].
+const REST: f64 = 0.02;
+/// Effects that are the same while a robot moves: a constant may be either.
 const CONSTANT: [&str; 2] = ["base_load", "brake_power"];
 
 /// Mean power of a motion that repeats, or of a log.
@@ -47,6 +49,12 @@ pub struct Powers {
 impl Powers {
     fn len(&self) -> usize {
         self.power.len()
+    }
+
+    /// Share of the joints that move.
+    fn moving(&self, row: usize) -> f64 {
+        let moving = self.qd.iter().filter(|qd| qd[row].abs() > REST).count();
+        moving as f64 / self.qd.len().max(1) as f64
     }
 
     fn mechanical(&self, row: usize) -> f64 {
@@ -183,6 +191,8 @@ impl Reference {
 struct Cause {
     effect: &'static Effect,
     joint: Option<usize>,
+    /// The least that its value can be: what there is may go.
+    least: f64,
     column: fn(&Reference, &Powers, usize, usize) -> f64,
 }
 
@@ -192,27 +202,32 @@ impl Cause {
     }
 }
 
-fn causes(dof: usize, given_back: f64, may: &dyn Fn(&str) -> bool) -> Vec<Cause> {
+fn causes(reference: &Reference, may: &dyn Fn(&str) -> bool) -> Vec<Cause> {
     type Column = fn(&Reference, &Powers, usize, usize) -> f64;
-    let mut all: Vec<(&str, Option<usize>, Column)> = vec![
-        ("base_load", None, |_, _, _, _| 1.0),
+    let mut all: Vec<(&str, Option<usize>, f64, Column)> = vec![
+        ("base_load", None, -reference.base, |_, _, _, _| 1.0),
         // What hangs on the link of the drives takes what joints give back.
-        ("base_load", None, |of, log, _, row| of.share(log, row)),
+        ("base_load", None, -reference.base, |of, log, _, row| of.share(log, row)),
+        // Brakes of single axes, or of all together, are held open while these move.
+        ("brake_power", None, -reference.base, |_, log, _, row| log.moving(row)),
+        ("brake_power", None, -reference.base, |_, log, _, row| log.moving(row).ceil()),
     ];
-    if given_back > 0.0 {
+    if reference.given_back > 0.0 {
         let kept: Column = |of, log, _, row| -of.given_back * of.sum(log, row).min(0.0);
-        all.push(("no_regeneration", None, kept));
+        all.push(("no_regeneration", None, 0.0, kept));
     }
-    for joint in (0..dof).map(Some) {
-        let losses: [(&str, Column); 3] = [
-            ("copper_loss", |of, log, j, row| of.share(log, row) * log.tau[j][row].powi(2)),
-            ("inverter_loss", |of, log, j, row| of.share(log, row) * log.tau[j][row].abs()),
-            ("iron_loss", |of, log, j, row| of.share(log, row) * log.qd[j][row].powi(2)),
+    for (joint, loss) in reference.loss.iter().enumerate() {
+        let losses: [(&str, f64, Column); 3] = [
+            ("copper_loss", -loss, |of, log, j, row| of.share(log, row) * log.tau[j][row].powi(2)),
+            ("inverter_loss", 0.0, |of, log, j, row| of.share(log, row) * log.tau[j][row].abs()),
+            ("iron_loss", 0.0, |of, log, j, row| of.share(log, row) * log.qd[j][row].powi(2)),
         ];
-        all.extend(losses.map(|(id, column)| (id, joint, column)));
+        all.extend(losses.map(|(id, least, column)| (id, Some(joint), least, column)));
     }
     let all = all.into_iter().filter(|(id, ..)| may(id));
-    all.filter_map(|(id, joint, column)| Some(Cause { effect: find(id)?, joint, column })).collect()
+    let cause =
+        |(id, joint, least, column)| Some(Cause { effect: find(id)?, joint, least, column });
+    all.filter_map(cause).collect()
 }
 
 /// Which effects separate the power now from that of the baseline. `None` where the baseline
@@ -226,7 +241,7 @@ pub fn diagnose_power(
     may: &dyn Fn(&str) -> bool,
 ) -> Option<PowerFound> {
     let reference = Reference::new(model, baseline)?;
-    let causes = causes(model.dof, reference.given_back, may);
+    let causes = causes(&reference, may);
     let weighing = Weighing::new(&reference, &causes, train)?;
     let chosen = weighing.forward();
     let values = weighing.evidence.estimate(&chosen)?;
@@ -300,6 +315,7 @@ impl Weighing<'_> {
             let given = self.evidence.gain(&chosen);
             let with = |k: usize| [chosen.as_slice(), &[k]].concat();
             let best = (0..self.causes.len())
+                .rev()
                 .filter(|k| !chosen.iter().any(|of| self.is_alike(*of, *k)))
                 .filter(|k| self.is_possible(&with(*k)))
                 .map(|k| (self.evidence.gain(&with(k)), k))
@@ -318,11 +334,15 @@ impl Weighing<'_> {
         a.joint == b.joint && (a.joint.is_some() || a.effect.id == b.effect.id)
     }
 
-    /// Whether each of some causes takes more power, and enough of it.
+    /// Whether each of some causes can be, and changes enough of the power.
     fn is_possible(&self, chosen: &[usize]) -> bool {
         let Some(values) = self.evidence.estimate(chosen) else { return false };
         let mut of = chosen.iter().zip(values.mean.iter());
-        of.all(|(k, value)| value * self.sizes[*k] > LEAST_SIZE * self.power)
+        of.all(|(k, value)| {
+            // What takes less beside what takes more makes up for a law of another form.
+            *value >= if chosen.len() > 1 { 0.0 } else { self.causes[*k].least }
+                && value.abs() * self.sizes[*k] > LEAST_SIZE * self.power
+        })
     }
 
     /// What is said of one of the chosen causes.
@@ -335,7 +355,7 @@ impl Weighing<'_> {
         for (k, other) in self.causes.iter().enumerate() {
             let is_like = k == one || !chosen.contains(&k) && all - gain(k) < CLASS;
             let id = other.effect.id;
-            let same = if CONSTANT.contains(&id) { &CONSTANT[..] } else { &[id] };
+            let same = if id == CONSTANT[0] { &CONSTANT[..] } else { &[id] };
             class.extend(same.iter().filter(|_| is_like));
         }
         let mut seen = BTreeSet::new();

@@ -33,7 +33,7 @@ pub(super) fn is_opposite(records: &[Record<'_>]) -> bool {
 impl Turned {
     /// The most probable set's effects that are there or not.
     pub(super) fn of(search: &Search<'_>, none: Found) -> Option<Turned> {
-        let (_, found, _) = search.best(none);
+        let found = search.best(none).best;
         let all = Fitted::of_fit(&found.fit);
         let fitted: Vec<Fitted> =
             all.into_iter().filter(|of| of.effect.coordinates.is_empty()).collect();

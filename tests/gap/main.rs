@@ -2,8 +2,10 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
+mod everyday;
 #[path = "../support/excited.rs"]
 mod excited;
+mod next;
 mod power;
 mod simulated;
 
@@ -128,7 +130,7 @@ fn offsets_are_found_with_their_size() {
         "{found_offset:?} {expected}"
     );
     // The library may be incomplete, which limits the probability.
-    assert!((0.5..=0.95).contains(&found.effects[0].probability));
+    assert!((0.5..=0.95).contains(&found.effects[0].probability(true)));
     assert!(found.shrink.total.value > SHRINKS, "{:?}", found.shrink);
 }
 
@@ -393,6 +395,7 @@ fn friction_and_rotor_inertia_of_a_wrist_do_not_become_negative() {
         coordinates: change.clone(),
         parameters: change,
         deviations: vec![0.1; 4],
+        significance: None,
     };
     let none = DVector::zeros(0);
     let improved = Improved::new(&nominal, [&none, &none], [&[], &[fitted]]).applied;
@@ -411,6 +414,7 @@ fn a_diagnosed_load_is_added_to_the_listed_one() {
         coordinates: LOAD.to_vec(),
         parameters: payload.parameters_of(&LOAD),
         deviations: vec![0.1; LOAD.len()],
+        significance: None,
     };
     let none = DVector::zeros(0);
     let loaded = |model: &Model| {

@@ -9,6 +9,12 @@ use crate::excited::{irb1600, normal};
 const ROWS: usize = 800;
 /// Largest deviation of a value, in standard deviations.
 const WITHIN: f64 = 4.0;
+/// Rate below which a joint rests \[rad/s\].
+const RESTS: f64 = 0.02;
+/// Joints move by turns: rows of a turn, number of turns after which they come again, those at rest.
+const TURN: usize = 50;
+const TURNS: usize = 5;
+const AT_REST: usize = 2;
 
 /// Power of a motion: base, mechanical power and losses by joint, with partial regeneration, noise,
 /// and the additional term `more` by row.
@@ -24,7 +30,11 @@ fn log(seed: u64, more: &dyn Fn(&Powers, usize, f64) -> f64) -> Powers {
         (0..ROWS).map(|row| at(std::f64::consts::TAU * row as f64 / ROWS as f64)).collect()
     };
     let sizes = [60.0, 80.0, 40.0, 6.0, 6.0, 3.0];
-    let qd: Vec<Vec<f64>> = sizes.iter().map(|_| wave(0.5, &mut random)).collect();
+    let mut qd: Vec<Vec<f64>> = sizes.iter().map(|_| wave(0.5, &mut random)).collect();
+    for (joint, of) in qd.iter_mut().enumerate() {
+        let rests = |row: usize| (row / TURN + 2 * joint) % TURNS < AT_REST;
+        (0..ROWS).filter(|row| rests(*row)).for_each(|row| of[row] = 0.0);
+    }
     let tau: Vec<Vec<f64>> = sizes.iter().map(|size| wave(*size, &mut random)).collect();
     let mut log = Powers { qd, tau, power: Vec::new() };
     let model = robot();
@@ -101,6 +111,27 @@ fn a_load_on_the_dc_link_is_reported_as_base_load() {
     assert_eq!(found.effects[0].class, ["base_load", "brake_power"]);
     let estimate = &found.effects[0].parameters[0];
     assert!((estimate.value - 60.0).abs() < WITHIN * estimate.sd, "{estimate:?}");
+}
+
+/// A fan that runs no more.
+#[test]
+fn power_that_is_gone_is_found() {
+    let found = found(&|_, _, _| -60.0);
+    assert_eq!(named(&found), [("base_load", None)]);
+    let estimate = &found.effects[0].parameters[0];
+    assert!((estimate.value + 60.0).abs() < WITHIN * estimate.sd, "{estimate:?}");
+}
+
+/// Coils of the brakes of single axes are on while these move.
+#[test]
+fn brakes_of_moving_axes_are_told_from_a_base_load() {
+    let share = |log: &Powers, row: usize| {
+        let moving = log.qd.iter().filter(|qd| qd[row].abs() > RESTS).count();
+        moving as f64 / log.qd.len() as f64
+    };
+    let found = found(&|log, row, _| 50.0 * share(log, row));
+    assert_eq!(named(&found), [("brake_power", None)]);
+    assert_eq!(found.effects[0].class, ["brake_power"]);
 }
 
 /// With two kinds of losses the reference is accurate to half a percent only.

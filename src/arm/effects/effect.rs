@@ -157,6 +157,15 @@ pub enum Role {
     Shape(fn(&Scale) -> Vec<f64>),
     /// A discrete shape parameter: only tried values are possible.
     Choice(fn(&Scale) -> Vec<f64>),
+    /// The number of the only joint that has it, from 1; 0: all have it.
+    OnlyJoint,
+    /// The order of waves over the position of the joint \[1/rad\]: any that the sampling resolves.
+    Waves {
+        /// The lowest one.
+        least: f64,
+        /// The highest one.
+        most: fn(&Scale) -> f64,
+    },
     /// How it grows and falls in its window, from 0: at once.
     Rise {
         /// The largest value.
@@ -238,6 +247,8 @@ pub struct Effect {
     pub brings: &'static [&'static str],
     /// Ids of effects with similar torques.
     pub confused: &'static [&'static str],
+    /// What to inspect where it is found.
+    pub inspect: &'static str,
     /// An experiment that separates it from those: options of `joulepath excite`, and the reason.
     pub experiment: [&'static str; 2],
     /// Its implementation.

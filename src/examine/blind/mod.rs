@@ -38,10 +38,12 @@ mod workspace;
 
 pub use bench::Settings;
 pub use case::{Case, case};
-pub use grade::{Asked, Bin, DiagnosisError, FAMILY, Grades, Rate, Wrong, grade, is_of};
+pub use grade::{
+    Asked, Bin, DiagnosisError, FAMILY, Grades, Rate, Stated, Wrong, grade, is_of, stated,
+};
 pub use label::{HeldOut, Kind, Label, TrueParameter, Truth};
 #[cfg(feature = "internals")]
 pub use plant::torque;
 pub use seal::{KEY, SEALS, SealError, Sealed, open, seal};
 #[cfg(feature = "internals")]
-pub use unlogged::{Unlogged, unlogged};
+pub use unlogged::{Unlogged, further, unlogged};

@@ -2,6 +2,8 @@
 
 use super::bench::{Bench, Settings};
 use super::fourier::fourier;
+use super::mechanics::Joints;
+use super::model_error::variation;
 use super::motion::{Motion, PER_ROW, Sample};
 use super::noise::ROW_S;
 use super::pick_place::pick_place;
@@ -48,6 +50,31 @@ pub fn unlogged(settings: &Settings, number: usize, count: usize) -> Option<Vec<
     let dof = robot.plant.dof;
     let last = |of| last_round(&of, &simulate(&robot, &of, clock, &steady), clock, dof);
     Some(motions.map(last).collect())
+}
+
+/// Pause before a further log \[s\].
+const PAUSE_S: f64 = 30.0;
+
+/// The log of a further motion of a case's robot, as CSV: `states` are position, rate and acceleration
+/// of one repetition every 2 ms, `cycles` the repetitions. `None` for program runs, or if the catalogue
+/// lacks the robot.
+#[must_use]
+pub fn further(
+    settings: &Settings,
+    number: usize,
+    states: &[[Joints; 3]],
+    cycles: usize,
+) -> Option<String> {
+    let bench = Bench::drawn(settings, number).filter(|bench| !bench.with_program)?;
+    let (_, disturbances) = bench.wrong();
+    let robot = bench.robot(disturbances.iter().collect());
+    let lasts = settings.cycles as f64 * settings.period_s;
+    let clock = bench.clocks()[2] + lasts + PAUSE_S;
+    let samples = states.iter().map(|[q, qd, qdd]| Sample { q: *q, qd: *qd, qdd: *qdd }).collect();
+    let mut draws = bench.stream("further");
+    let factors = variation(cycles, bench.variation, &mut draws);
+    let rows = simulate(&robot, &Motion { samples }, clock, &factors);
+    Some(bench.noise.log(&rows, bench.plant.dof, clock, None, &mut draws))
 }
 
 fn last_round(motion: &Motion, rows: &[Row], clock: f64, dof: usize) -> Unlogged {

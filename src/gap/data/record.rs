@@ -1,7 +1,7 @@
 //! A log ready to be compared with the model.
 
 use crate::arm::effects::{Motion, of_the_whole_motion};
-use crate::arm::robot::Model;
+use crate::arm::robot::{MAX_DOF, Model};
 use crate::learn::identify::{Block, Samples, Source};
 use crate::learn::log::LowPass;
 
@@ -98,12 +98,8 @@ impl<'a> Record<'a> {
             // Rows that are left out have a sense all the same: a filter spreads their friction.
             let still = |rest: &f64| if cutoff.is_some() { STILL * rest } else { *rest };
             let slow: Vec<f64> = rest.iter().map(still).collect();
-            let mut motion = Motion::new(model, block.t.clone(), series, &slow, period.is_some());
-            // What the model lists of the whole motion is the model's.
-            let of_motion = of_the_whole_motion(&motion);
-            for (to, added) in motion.torque.iter_mut().zip(of_motion) {
-                to.iter_mut().zip(added).for_each(|(to, x)| *to += x);
-            }
+            let motion =
+                with_listed(Motion::new(model, block.t.clone(), series, &slow, period.is_some()));
             let used = Used::new(&motion, &rest, highest, cutoff);
             let spread = samples.repetitions.as_deref();
             let of_mean =
@@ -125,6 +121,40 @@ impl<'a> Record<'a> {
             .filter(|record| record.kind == RecordKind::Mean)
             .map(|record| Record { kind: RecordKind::Before, ..record })
             .collect()
+    }
+
+    /// A periodic motion that nobody has logged, whose torques are the model's. `states` are position,
+    /// rate and acceleration \[rad, s\] every `step` \[s\], `noise` the variance of a row of one
+    /// repetition by joint \[N²m²\].
+    pub(in crate::gap) fn planned(
+        model: &'a Model,
+        states: &[[[f64; MAX_DOF]; 3]],
+        step: f64,
+        noise: &[f64],
+        repetitions: usize,
+    ) -> Record<'a> {
+        let of = |order: usize, joint: usize| states.iter().map(|of| of[order][joint]).collect();
+        let series = [0, 1, 2].map(|order| (0..model.dof).map(|j| of(order, j)).collect());
+        let t: Vec<f64> = (0..states.len()).map(|row| step * row as f64).collect();
+        let rest = vec![REST; model.dof];
+        let motion = with_listed(Motion::new(model, t, series, &rest, true));
+        let used = Used::new(&motion, &rest, BAND / step, None);
+        let period = step * states.len() as f64;
+        let measured = motion.torque.clone();
+        let mut record = Record::mean(motion, used, measured, None, period);
+        let share = 1.0 / repetitions as f64;
+        record.repetitions = repetitions;
+        record.times = (0..repetitions).map(|k| (period * k as f64, share)).collect();
+        for (all, variance) in record.noise.iter_mut().zip(noise) {
+            all.fill(share * variance);
+        }
+        record
+    }
+
+    /// Variance of the noise in a row of one repetition, by joint \[N²m²\].
+    pub(in crate::gap) fn noise_of_one(&self) -> Vec<f64> {
+        let mean = |of: &Vec<f64>| of.iter().sum::<f64>() / of.len().max(1) as f64;
+        self.noise.iter().map(|of| self.repetitions as f64 * mean(of)).collect()
     }
 
     /// Whether a joint moves at an instant, so that its torque counts.
@@ -152,6 +182,13 @@ impl<'a> Record<'a> {
     /// Rows of a series of a joint.
     pub(in crate::gap) fn rows_of(&self, joint: usize, x: &[f64]) -> Vec<f64> {
         self.used.rows(joint, x)
+    }
+
+    /// The series of a joint whose product with another one is that of rows with the other one's, but
+    /// for what is done to series before.
+    pub(in crate::gap) fn back(&self, joint: usize, rows: &[f64]) -> Vec<f64> {
+        let all = self.used.spectrum.back(rows);
+        all.iter().zip(&self.used.window[joint]).map(|(x, w)| x * w).collect()
     }
 
     fn mean(
@@ -212,6 +249,15 @@ impl<'a> Record<'a> {
             ..self.clone()
         }
     }
+}
+
+/// A motion whose torques have what the model lists of the whole motion.
+fn with_listed(mut motion: Motion<'_>) -> Motion<'_> {
+    let listed = of_the_whole_motion(&motion);
+    for (to, added) in motion.torque.iter_mut().zip(listed) {
+        to.iter_mut().zip(added).for_each(|(to, x)| *to += x);
+    }
+    motion
 }
 
 /// Positions of a period up to a frequency \[Hz\], with two derivatives.

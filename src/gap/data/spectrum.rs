@@ -97,6 +97,18 @@ impl Spectrum {
         rows
     }
 
+    /// The series whose product with another one is that of rows with the other one's.
+    pub(super) fn back(&self, rows: &[f64]) -> Vec<f64> {
+        let scale = (2.0 / self.length as f64).sqrt();
+        let mut values = vec![Complex::new(0.0, 0.0); self.length];
+        values[0].re = rows[0] * scale * std::f64::consts::FRAC_1_SQRT_2;
+        for (value, row) in values[1..self.bins].iter_mut().zip(rows[1..].chunks_exact(2)) {
+            *value = Complex::new(row[0] * scale, row[1] * scale);
+        }
+        self.inverse.process(&mut values);
+        values.iter().map(|x| x.re).collect()
+    }
+
     /// Mean power of a row at each frequency, over the neighbours within `reach`.
     pub(super) fn smoothed(&self, rows: &[f64], reach: usize) -> Vec<f64> {
         let mut sums = vec![0.0];
@@ -140,5 +152,7 @@ mod tests {
         assert_eq!(rows.len(), 101);
         let power = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
         assert!((power(&rows) - power(&x)).abs() < 1e-9 * power(&x));
+        let back = spectrum.back(&rows);
+        assert!(back.iter().zip(&x).all(|(a, b)| (a - b).abs() < 1e-12));
     }
 }

@@ -2,24 +2,22 @@
 
 use rayon::prelude::*;
 
-use super::calibration::calibrated;
 use super::finding::{Estimated, Finding, Remainder, Verdict};
-use super::search::{BEYOND, Candidate, Found, Search, Tried};
+use super::found::{Candidate, Found, Tried};
+use super::search::{BEYOND, Search};
 use super::trail::{Entry, Gate};
-use crate::arm::effects::{Effect, Nature, Scope};
-use crate::gap::data::RecordKind;
+use crate::arm::effects::{Acts, Effect, Nature, Scope};
+use crate::gap::data::{Record, RecordKind};
 use crate::gap::design::Set;
 use crate::gap::model::Fitted;
 use crate::gap::trust::Trust;
 
 /// Ids of effects that a class has at most: more are unknown.
 const LARGEST_CLASS: usize = 3;
+/// Deviations of a law from 0: what only changes with its shape is no law.
+const SIGNIFICANT: f64 = 3.0;
 /// Joints that are named of an effect of the robot at most.
 const FEW: usize = 2;
-/// Standard deviations of what any robot has within which a parameter is no finding.
-const EVERYDAY: f64 = 3.0;
-/// The same of a change since the baseline, which has them, too.
-const CHANGED: f64 = 0.5;
 /// Correlation from which on a law takes back another one: it is a form of that.
 const TAKES_BACK: f64 = -0.5;
 
@@ -52,7 +50,7 @@ struct Weighed {
     /// Joints that an effect of the robot reaches, where it reaches but few.
     few: Vec<usize>,
     class: Vec<&'static str>,
-    probability: f64,
+    inclusion: f64,
 }
 
 /// An effect at a joint.
@@ -75,13 +73,15 @@ struct Decided {
     candidates: Vec<Finding>,
 }
 
-/// Decides on what a search found.
+/// Decides on what a search found. `missed` is what the refitted model misses in held-out data, by joint
+/// \[Nm\].
 #[must_use]
 pub(in crate::gap) fn decide(
     search: &Search<'_>,
     none: &Found,
     found: &Found,
     tried: &[Tried],
+    missed: &[f64],
 ) -> Decision {
     let tunables = &search.design.tunables;
     let has_baseline = search.records.iter().any(|record| record.kind == RecordKind::Before);
@@ -92,7 +92,6 @@ pub(in crate::gap) fn decide(
         .into_par_iter()
         .map(|k| weigh(search, none, found, k, tried))
         .collect();
-    let least = if has_baseline { tunables.least_change } else { tunables.least_share };
     let everyday: Vec<f64> = (0..n).map(|j| found.fit.everyday(search.design, j)).collect();
     let left = |fit: &Found, joint: usize| {
         if has_baseline {
@@ -118,21 +117,21 @@ pub(in crate::gap) fn decide(
         for (k, piece) in of.pieces.iter().enumerate() {
             let joint = piece.fitted.joint;
             let at = joint.map_or(id.to_owned(), |joint| format!("{id} of joint {}", joint + 1));
-            let left = left(found, joint.unwrap_or(piece.most));
-            // The more any error is beyond a usual one, the less it leaves to judge by.
-            let over = (left / tunables.usual_error)
-                .clamp(tunables.over_everyday, tunables.over_unexplained);
-            let least = least.max(over * left);
+            let place = joint.unwrap_or(piece.most);
+            let least = least_size(search, piece, left(found, place), missed[place]);
             let confused = beside_confused(search, found, &weighed, [number, k]);
-            let is_quiet = joint.is_none_or(|joint| !noisy.contains(&joint));
+            let is_quiet = !noisy.contains(&place);
             let mut there = is_quiet
                 & ask(Gate::Size, at.clone(), piece.share, least)
                 & ask(Gate::Bounds, at.clone(), piece.fitted.beyond_bounds(), BEYOND);
+            if let Some(value) = piece.fitted.significance {
+                there &= ask(Gate::Significance, at.clone(), value, SIGNIFICANT);
+            }
             if let Some(ratio) = confused {
                 there &= ask(Gate::Form, at.clone(), ratio, tunables.of_confused);
             }
             if let Some(value) = piece.fitted.over_everyday() {
-                let limit = if has_baseline { CHANGED } else { EVERYDAY };
+                let limit = search.design.least_everyday();
                 there &= ask(Gate::Everyday, at.clone(), value, limit);
             }
             if of.pieces.len() > 1 {
@@ -157,9 +156,14 @@ pub(in crate::gap) fn decide(
         list.push(finding);
     }
     let has_parameters = kept.iter().any(|of| of.effect.nature == Nature::Parameters);
-    let fit = match kept.len() {
+    // What is everyday is not unexplained.
+    let mut explained = kept.clone();
+    let is_kept = |id: &str| kept.iter().any(|of| of.effect.id == id);
+    let all = found.effects.iter();
+    explained.extend(all.filter(|of| of.is_everyday && !is_kept(of.effect.id)).cloned());
+    let fit = match explained.len() {
         0 => None,
-        _ => search.with(none, kept.clone()),
+        _ => search.with(none, explained),
     };
     let fit =
         fit.unwrap_or_else(|| Found { effects: Vec::new(), score: 0.0, fit: none.fit.clone() });
@@ -193,7 +197,7 @@ impl Weighed {
             effect: self.effect,
             joints: if joints.is_empty() { self.few.clone() } else { joints },
             class: self.class.clone(),
-            probability: self.probability,
+            inclusion: self.inclusion,
             parameters: parameters(fitted),
             nats: self.nats,
             size: self.size,
@@ -228,6 +232,26 @@ fn beside_confused(
         .map(|joint| found.fit.correlation(search.design, members.clone(), joint))
         .fold(0.0, f64::min);
     Some(if least < TAKES_BACK && ratio < 1.0 { -ratio } else { ratio })
+}
+
+/// Least share of a joint's torque that is no everyday error, where one of a share `left` is left, and
+/// held-out data is `missed` \[Nm\].
+fn least_size(search: &Search<'_>, piece: &WeighedPiece, left: f64, missed: f64) -> f64 {
+    let tunables = &search.design.tunables;
+    // The more any error is beyond a usual one, the less it leaves to judge by.
+    let over =
+        (left / tunables.usual_error).clamp(tunables.over_everyday, tunables.over_unexplained);
+    let least = search.design.least_share().max(over * left);
+    // What acts once has to stand out while it acts: no other log can confirm it, and some error is large
+    // somewhere.
+    match (piece.fitted.effect.acts, piece.fitted.coordinates[..].last_chunk()) {
+        (Acts::InWindow, Some([start, end, 0.0])) => {
+            let all: f64 = search.records.iter().map(Record::duration).sum();
+            let torque = search.design.joints[piece.most].torque;
+            least.max(SIGNIFICANT * missed / torque * ((end - start) / all).sqrt())
+        }
+        _ => least,
+    }
 }
 
 /// Parameters of an effect at its joints; with several joints their names end with the joint.
@@ -290,7 +314,7 @@ fn weigh(
         size: largest(first..first + count),
         nats: found.score - without,
         few,
-        probability: calibrated(inclusion(effect.id, tried)),
+        inclusion: inclusion(effect.id, tried),
         class,
         pieces: pieces.collect(),
     }

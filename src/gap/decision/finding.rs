@@ -1,6 +1,6 @@
 //! What a diagnosis can say: a verdict, effects, places.
 
-use super::calibration::asserted;
+use super::calibration::{Calibration, of_odds};
 use crate::arm::effects::Effect;
 
 /// What was found.
@@ -60,8 +60,8 @@ pub struct Finding {
     pub joints: Vec<usize>,
     /// Effects that these data cannot tell from it, itself among them.
     pub class: Vec<&'static str>,
-    /// Posterior probability.
-    pub probability: f64,
+    /// Probability by the evidence alone, over all sets that were fitted.
+    pub inclusion: f64,
     /// Its parameters.
     pub parameters: Vec<Estimated>,
     /// Logarithm of the odds that it brings.
@@ -77,11 +77,17 @@ impl Finding {
             effect,
             joints,
             class: vec![effect.id],
-            probability: asserted(nats),
+            inclusion: of_odds(nats),
             parameters: Vec::new(),
             nats,
             size: 1.0,
         }
+    }
+
+    /// How often such an effect is there, if it is asserted or only considered.
+    #[must_use]
+    pub fn probability(&self, is_asserted: bool) -> f64 {
+        Calibration::used().stated(self.inclusion, is_asserted)
     }
 }
 

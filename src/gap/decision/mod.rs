@@ -3,13 +3,17 @@
 mod calibration;
 mod decide;
 mod finding;
+mod found;
 mod search;
 mod shape;
 mod trail;
+mod waves;
 mod window;
 
-pub(super) use calibration::asserted;
+pub use calibration::Calibration;
+pub(super) use calibration::of_odds;
 pub(in crate::gap) use decide::{Decision, decide, may_name_parameters};
 pub use finding::{Estimated, Finding, Place, Remainder, Verdict};
-pub(in crate::gap) use search::{Candidate, Found, Search, Tried};
+pub(in crate::gap) use found::{Candidate, Found, Searched, Tried};
+pub(in crate::gap) use search::Search;
 pub use trail::{Entry, Gate};

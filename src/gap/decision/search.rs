@@ -3,19 +3,25 @@
 use crate::arm::effects::{Acts, Effect, Nature, Scope, Subject};
 use rayon::prelude::*;
 
+use super::found::{Candidate, Found, Searched};
 use super::shape::{lowest, moves, refined};
+use super::waves::Waves;
 use super::window::Windows;
 use crate::gap::data::Record;
 use crate::gap::design::{Design, Group, PieceRows, link_pieces, piece_rows};
 use crate::gap::model::Fitted;
 use crate::gap::posterior::{
-    Fit, Gains, Hypothesis, Member, Sizes, Start, fitted, fitted_as_written, usual,
+    Fit, Gains, Hypothesis, Member, Sizes, Start, fitted, fitted_as_written, halfway, usual,
 };
 
-/// Families that are fitted in full in each round.
+/// Effects at single joints that are looked at in each round, and effects at all their joints.
+const SINGLES: usize = 60;
 const FULL: usize = 6;
-/// Effects that are found together at most.
+/// Effects that are found together at most, and those of everyday size beside them.
 const MOST: usize = 3;
+const MOST_EVERYDAY: usize = 3;
+/// Rounds in which effects are added at most.
+const ROUNDS_AT_MOST: usize = MOST + 3;
 /// Steps of the sizes, least and most: of a first fit, of a first look at a set, of a fit with a set.
 const FIRST: [usize; 2] = [10, 40];
 const LOOK: [usize; 2] = [3, 12];
@@ -31,52 +37,6 @@ const ROUNDS: usize = 2;
 /// Sets whose shapes are refined in each round.
 const REFINED: usize = 4;
 
-/// Pieces of one effect.
-#[derive(Clone)]
-pub(in crate::gap) struct Candidate {
-    /// The effect.
-    pub effect: &'static Effect,
-    /// Its pieces.
-    pub pieces: Vec<PieceRows>,
-    /// Prior cost \[nats\].
-    pub cost: f64,
-}
-
-impl Candidate {
-    /// Whether another one has the same pieces.
-    fn is_same(&self, other: &Candidate) -> bool {
-        let mut pieces = self.pieces.iter().zip(&other.pieces);
-        self.effect.id == other.effect.id
-            && self.pieces.len() == other.pieces.len()
-            && pieces.all(|(a, b)| a.joint == b.joint && a.shape == b.shape)
-    }
-}
-
-/// A set of effects.
-#[derive(Clone)]
-pub(in crate::gap) struct Found {
-    /// The effects.
-    pub effects: Vec<Candidate>,
-    /// The fit with them.
-    pub fit: Fit,
-    /// Logarithm of the odds against no effect.
-    pub score: f64,
-}
-
-impl Found {
-    fn tried(&self) -> Tried {
-        Tried { ids: self.effects.iter().map(|of| of.effect.id).collect(), score: self.score }
-    }
-}
-
-/// A set that was fitted: ids of its effects, and the logarithm of the odds against no effect.
-pub(in crate::gap) struct Tried {
-    /// Ids.
-    pub ids: Vec<&'static str>,
-    /// Odds \[nats\].
-    pub score: f64,
-}
-
 /// A search.
 pub(in crate::gap) struct Search<'a> {
     /// Records.
@@ -87,6 +47,8 @@ pub(in crate::gap) struct Search<'a> {
     pieces: Vec<PieceRows>,
     /// Effects that act in windows.
     windows: Vec<Windows>,
+    /// Effects that are waves.
+    waves: Vec<Waves>,
 }
 
 impl<'a> Search<'a> {
@@ -107,7 +69,12 @@ impl<'a> Search<'a> {
             let count = if of.scope == Scope::Robot { 1 } else { n };
             (0..count).filter_map(|joint| Windows::new(design, records, of, joint))
         });
-        Search { records, design, pieces, windows: windows.collect() }
+        let waves = effects.iter().flat_map(|of| {
+            let joints = (of.joints)(n).into_iter();
+            joints.filter_map(|joint| Waves::new(records, of, joint))
+        });
+        let (windows, waves) = (windows.collect(), waves.collect());
+        Search { records, design, pieces, windows, waves }
     }
 }
 
@@ -119,58 +86,48 @@ impl Search<'_> {
         Some(Found { effects: Vec::new(), score: 0.0, fit })
     }
 
-    /// For each effect that is not in the set, its best joints and shapes beside it.
-    #[must_use]
-    fn candidates(
+    /// For each effect that is not in the set its best shape at each joint, those alone that may explain
+    /// something.
+    fn singles(
         &self,
-        pieces: &[PieceRows],
-        gains: &[[f64; 2]],
+        pieces: Vec<PieceRows>,
+        gains: &Gains<'_>,
         set: &[Candidate],
-    ) -> Vec<(f64, Candidate)> {
-        let mut all: Vec<(f64, Candidate)> = Vec::new();
-        let mut ids: Vec<&'static str> = Vec::new();
-        for piece in pieces {
-            if !ids.contains(&piece.effect.id) {
-                ids.push(piece.effect.id);
+    ) -> Vec<Candidate> {
+        let all = gains.of_all(&pieces, f64::INFINITY);
+        let is_there = |piece: &PieceRows| {
+            let id = piece.effect.id;
+            let brings =
+                |other: &PieceRows| other.joint == piece.joint && other.effect.brings.contains(&id);
+            set.iter().any(|of| of.effect.id == id || of.pieces.iter().any(brings))
+        };
+        let mut best: Vec<(f64, PieceRows)> = Vec::new();
+        for (piece, gain) in pieces.into_iter().zip(all) {
+            let net = gain - self.cost_of(&piece);
+            if net <= 0.0 || is_there(&piece) {
+                continue;
+            }
+            let is_like =
+                |of: &PieceRows| of.effect.id == piece.effect.id && of.joint == piece.joint;
+            match best.iter_mut().find(|(_, of)| is_like(of)) {
+                Some(known) if net > known.0 => *known = (net, piece),
+                Some(_) => {}
+                None => best.push((net, piece)),
             }
         }
-        for id in ids.into_iter().filter(|id| set.iter().all(|of| of.effect.id != *id)) {
-            // By joint: the gain less the cost, the cost, the piece.
-            let mut best: Vec<(Option<usize>, [f64; 2], &PieceRows)> = Vec::new();
-            let brought = |piece: &PieceRows| {
-                let of_joint = |other: &PieceRows| {
-                    other.joint == piece.joint && other.effect.brings.contains(&id)
-                };
-                set.iter().flat_map(|of| &of.pieces).any(of_joint)
-            };
-            for (piece, [gain, of_brought]) in
-                pieces.iter().zip(gains).filter(|(p, _)| p.effect.id == id)
-            {
-                if brought(piece) {
-                    continue;
-                }
-                let cost = self.cost_of(piece) + of_brought;
-                let net = gain - cost;
-                match best.iter_mut().find(|(joint, ..)| *joint == piece.joint) {
-                    Some(known) if net > known.1[0] => (known.1, known.2) = ([net, cost], piece),
-                    Some(_) => {}
-                    None => best.push((piece.joint, [net, cost], piece)),
-                }
+        best.sort_by(|a, b| b.0.total_cmp(&a.0));
+        best.truncate(SINGLES);
+        let single = |(_, piece): (f64, PieceRows)| {
+            // What acts by itself explains nothing with a wrong shape.
+            let piece = if piece.is_fixed() { self.best_shape(gains, &piece) } else { piece };
+            Candidate {
+                effect: piece.effect,
+                cost: self.design.tunables.effect_cost + self.cost_of(&piece),
+                pieces: vec![piece],
+                is_everyday: false,
             }
-            best.sort_by(|a, b| b.1[0].total_cmp(&a.1[0]));
-            let wanted = |(k, of): &(usize, &(Option<usize>, [f64; 2], &PieceRows))| {
-                *k == 0 || of.1[0] > 0.0
-            };
-            let chosen: Vec<_> = best.iter().enumerate().filter(wanted).map(|(_, of)| of).collect();
-            let Some(first) = chosen.first() else { continue };
-            let effect_cost = self.design.tunables.effect_cost;
-            let score = chosen.iter().map(|of| of.1[0]).sum::<f64>() - effect_cost;
-            let cost = effect_cost + chosen.iter().map(|of| of.1[1]).sum::<f64>();
-            let pieces = chosen.iter().map(|of| of.2.clone()).collect();
-            all.push((score, Candidate { effect: first.2.effect, pieces, cost }));
-        }
-        all.sort_by(|a, b| b.0.total_cmp(&a.0));
-        all
+        };
+        best.into_par_iter().map(single).collect()
     }
 
     /// The fit with a set of effects.
@@ -192,7 +149,8 @@ impl Search<'_> {
         let start = Start::near(self.design, &hypothesis, [none.fit.known(), near.fit.known()]);
         let fit = fitted(self.design, hypothesis, start, steps)?;
         let cost: f64 = effects.iter().map(|of| of.cost).sum();
-        let score = fit.log_evidence - none.fit.log_evidence - cost - self.beyond_usual(&fit)
+        let gain = fit.log_evidence - none.fit.log_evidence;
+        let score = gain - gain.max(0.0) * fit.share_brought() - cost - self.beyond_usual(&fit)
             + self.beyond_usual(&none.fit);
         Some(Found { effects, fit, score })
     }
@@ -207,28 +165,47 @@ impl Search<'_> {
         over.sum()
     }
 
-    /// The best set: effects are added while the evidence grows, then joints and effects that became
-    /// needless are taken out; with all sets that were fitted.
+    /// The best set, with all sets that were fitted. Effects of the size of a finding are added while the
+    /// evidence grows, then those of everyday size, all at once: what these explain as well goes.
     #[must_use]
-    pub(in crate::gap) fn best(&self, none: Found) -> (Found, Found, Vec<Tried>) {
-        let least = self.design.tunables.least_nats;
-        let mut tried = vec![Tried { ids: Vec::new(), score: 0.0 }];
-        let mut best: Option<Found> = None;
-        for _ in 0..MOST {
-            let next = self.next(&none, best.as_ref().unwrap_or(&none));
+    pub(in crate::gap) fn best(&self, none: Found) -> Searched {
+        let mut tried = vec![none.tried()];
+        let mut near: Vec<Found> = Vec::new();
+        let mut best = none.clone();
+        for _ in 0..ROUNDS_AT_MOST {
+            let mut next = self.next(&none, &best);
             tried.extend(next.iter().map(Found::tried));
-            let before = best.as_ref().map_or(0.0, |best| best.score);
-            match next.into_iter().next() {
-                Some(first) if first.score > before + least => best = Some(first),
-                _ => break,
+            near.extend(next.iter().take(REFINED).cloned());
+            next.retain(|of| of.score > best.score + self.design.tunables.least_nats);
+            let is_finding = |of: &&Found| of.places() > best.places();
+            let first = next.iter().find(is_finding).filter(|of| of.places() <= MOST).cloned();
+            let more = first.or_else(|| self.with_everyday(&none, &best, &next));
+            match more {
+                Some(more) => best = more,
+                None => break,
             }
         }
-        let best = match best {
-            Some(best) => self.pruned(&none, best),
-            None => none.clone(),
-        };
+        if best.effects.len() > 1 {
+            best = self.pruned(&none, best);
+        }
         tried.push(best.tried());
-        (none, best, tried)
+        Searched { none, best, tried, near }
+    }
+
+    /// A set with the effects of everyday size that others have more.
+    fn with_everyday(&self, none: &Found, found: &Found, others: &[Found]) -> Option<Found> {
+        let mut effects = found.effects.clone();
+        for last in others.iter().filter_map(|of| of.effects.last()).filter(|of| of.is_everyday) {
+            let is_known = effects.iter().any(|of| of.effect.id == last.effect.id);
+            if !is_known && effects.iter().filter(|of| of.is_everyday).count() < MOST_EVERYDAY {
+                effects.push(last.clone());
+            }
+        }
+        if effects.len() == found.effects.len() {
+            return None;
+        }
+        let all = self.pruned(none, self.fit([none, found], effects, STEPS)?);
+        (all.score > found.score + self.design.tunables.least_nats).then_some(all)
     }
 
     /// The set without effects and joints that hardly matter.
@@ -309,44 +286,64 @@ impl Search<'_> {
     /// The best sets with one effect more than `found`, best first.
     #[must_use]
     fn next(&self, none: &Found, found: &Found) -> Vec<Found> {
-        let at_usual = Start::at(usual(self.design));
-        let plain = fitted(self.design, found.fit.hypothesis.clone(), at_usual, NO_STEPS);
-        let mut wanted: Vec<Candidate> = Vec::new();
-        for fit in std::iter::once(&found.fit).chain(plain.iter()) {
-            let all = Gains::new(self.design, fit);
-            let more: Vec<PieceRows> = self
-                .windows
-                .par_iter()
-                .flat_map_iter(|of| of.best(self.records, self.design, &all))
-                .collect();
-            let mut gains = all.of_all(&self.pieces, f64::INFINITY);
-            gains.extend(all.of_all(&more, f64::INFINITY));
-            let pieces: Vec<PieceRows> = self.pieces.iter().cloned().chain(more).collect();
-            let mut best = self.candidates(&pieces, &gains, &found.effects);
-            best.truncate(FULL);
-            let best: Vec<Candidate> =
-                best.into_par_iter().map(|(_, candidate)| self.shaped(&all, candidate)).collect();
-            for candidate in best {
-                if !wanted.iter().any(|of| of.is_same(&candidate)) {
-                    wanted.push(candidate);
-                }
-            }
-        }
-        let mut all: Vec<Found> = wanted
-            .into_par_iter()
-            .filter_map(|candidate| {
-                let mut effects = found.effects.clone();
-                effects.push(candidate);
-                self.possible([none, found], self.fit([none, found], effects, LOOK)?)
-            })
-            .collect();
+        let start = Start::at(halfway(&found.fit.sizes));
+        let halfway = fitted(self.design, found.fit.hypothesis.clone(), start, NO_STEPS);
+        let Some(halfway) = halfway else { return Vec::new() };
+        let gains = Gains::new(self.design, &halfway);
+        let (records, design) = (self.records, self.design);
+        let windows = self.windows.par_iter();
+        let windows = windows.flat_map_iter(|of| of.best(records, design, &gains));
+        let waves = self.waves.par_iter();
+        let waves = waves.flat_map_iter(|of| of.best(records, design, &gains));
+        let mut pieces = self.pieces.clone();
+        pieces.extend(windows.chain(waves).collect::<Vec<_>>());
+        let singles = self.singles(pieces, &gains, &found.effects);
+        let look = |candidate: Candidate| {
+            let mut effects = found.effects.clone();
+            effects.push(candidate);
+            self.possible([none, found], self.fit([none, found], effects, LOOK)?)
+        };
+        let looked: Vec<Found> = singles.into_par_iter().filter_map(look).collect();
+        let joined = self.joined(found, looked).into_par_iter();
+        let looked =
+            |(candidate, single): (Candidate, Option<Found>)| single.or_else(|| look(candidate));
+        let mut all: Vec<Found> = joined.filter_map(looked).collect();
         all.sort_by(|a, b| b.score.total_cmp(&a.score));
-
         let rest = all.split_off(all.len().min(REFINED));
+        let refined = |of: Found| self.possible([none, found], self.refined(none, found, of));
         let mut all: Vec<Found> =
-            all.into_par_iter().map(|of| self.refined(none, found, of)).chain(rest).collect();
+            all.into_par_iter().filter_map(refined).chain(rest.into_par_iter()).collect();
         all.sort_by(|a, b| b.score.total_cmp(&a.score));
         all
+    }
+
+    /// The best effects at all joints at which they explain something, from sets with one piece more than
+    /// `found`; where that is one joint, with its set.
+    fn joined(&self, found: &Found, singles: Vec<Found>) -> Vec<(Candidate, Option<Found>)> {
+        let effect_cost = self.design.tunables.effect_cost;
+        let gain = |of: &Found| of.score - found.score + effect_cost;
+        let mut by_effect: Vec<(&'static str, Vec<Found>)> = Vec::new();
+        for of in singles.into_iter().filter(|of| gain(of) > 0.0) {
+            let Some(id) = of.effects.last().map(|last| last.effect.id) else { continue };
+            match by_effect.iter_mut().find(|(known, _)| *known == id) {
+                Some((_, all)) => all.push(of),
+                None => by_effect.push((id, vec![of])),
+            }
+        }
+        let of_effect = |(_, all): (&str, Vec<Found>)| {
+            let score: f64 = all.iter().map(gain).sum();
+            let mut candidate = all.first()?.effects.last()?.clone();
+            let pieces = all.iter().filter_map(|of| of.effects.last()).flat_map(|of| &of.pieces);
+            candidate.pieces = pieces.cloned().collect();
+            let costs = candidate.pieces.iter().map(|piece| self.cost_of(piece));
+            candidate.cost = effect_cost + costs.sum::<f64>();
+            let single = if all.len() == 1 { all.into_iter().next() } else { None };
+            Some((score, (candidate, single)))
+        };
+        let mut all: Vec<_> = by_effect.into_iter().filter_map(of_effect).collect();
+        all.sort_by(|a, b| b.0.total_cmp(&a.0));
+        all.truncate(FULL);
+        all.into_iter().map(|(_, of)| of).collect()
     }
 
     /// A piece with the best shape beside a fit.
@@ -362,41 +359,43 @@ impl Search<'_> {
         }
     }
 
-    /// A candidate whose pieces that act by themselves, which explain nothing with a wrong shape, have
-    /// their best ones; those that explain nothing even so go.
-    fn shaped(&self, gains: &Gains<'_>, mut candidate: Candidate) -> Candidate {
-        let pieces = std::mem::take(&mut candidate.pieces);
-        for piece in pieces {
-            if !piece.is_fixed() {
-                candidate.pieces.push(piece);
-                continue;
-            }
-            let best = self.best_shape(gains, &piece);
-            if candidate.pieces.is_empty() || gains.of(&best, f64::INFINITY) > self.cost_of(&best) {
-                candidate.pieces.push(best);
-            } else {
-                candidate.cost -= self.cost_of(&piece);
-            }
-        }
-        candidate
-    }
-
-    /// The set without pieces of its last effect whose parameters cannot be; `None` where none is left.
+    /// The set without pieces of its last effect that explain nothing or whose parameters cannot be;
+    /// `None` where none is left.
     fn possible(&self, known: [&Found; 2], of: Found) -> Option<Found> {
         let mut effects = of.effects.clone();
         let last = effects.last_mut()?;
         let fitted = Fitted::of_fit(&of.fit);
         let first = fitted.len() - last.pieces.len();
-        let is_possible = |k: usize| fitted[first + k].beyond_bounds() <= BEYOND;
-        let kept: Vec<usize> = (0..last.pieces.len()).filter(|k| is_possible(*k)).collect();
+        let explains = |k: &usize| {
+            let nats = of.fit.evidence_of(first + k);
+            nats.is_none_or(|nats| nats > self.cost_of(&last.pieces[*k]))
+        };
+        let all = 0..last.pieces.len();
+        let can_be = all.filter(|k| fitted[first + k].beyond_bounds() <= BEYOND);
+        let kept: Vec<usize> = can_be.filter(explains).collect();
         if kept.len() == last.pieces.len() {
-            return Some(of);
+            return Some(self.rated(of));
         }
         for (k, gone) in last.pieces.iter().enumerate() {
             last.cost -= if kept.contains(&k) { 0.0 } else { self.cost_of(gone) };
         }
         last.pieces = kept.iter().map(|k| last.pieces[*k].clone()).collect();
-        if last.pieces.is_empty() { None } else { self.fit(known, effects, LOOK) }
+        let rest = !last.pieces.is_empty();
+        rest.then(|| self.fit(known, effects, LOOK)).flatten().map(|of| self.rated(of))
+    }
+
+    /// The set, whose last effect takes a place where one of its pieces is of the size of a finding.
+    fn rated(&self, mut of: Found) -> Found {
+        let fitted = Fitted::of_fit(&of.fit);
+        let Some(last) = of.effects.last_mut() else { return of };
+        let least = self.design.least_everyday();
+        let is_large = |member: usize| {
+            of.fit.is_large(self.design, member)
+                && fitted[member].over_everyday().is_none_or(|over| over >= least)
+        };
+        let mut members = fitted.len() - last.pieces.len()..fitted.len();
+        last.is_everyday = last.effect.nature == Nature::Parameters || !members.any(is_large);
+        of
     }
 
     /// Prior cost of a piece \[nats\].

@@ -3,13 +3,15 @@
 //! The evidence of a jump has a narrow peak, as high frequencies know every row that is on the wrong
 //! side of it; low frequencies lead there.
 
+use std::f64::consts::PI;
+
 use crate::arm::effects::{Effect, Role};
 use crate::gap::data::Record;
 use crate::gap::design::PieceRows;
 use crate::gap::posterior::Gains;
 
 /// Levels: each halves the steps and doubles the frequencies.
-const LEVELS: i32 = 8;
+const LEVELS: i32 = 6;
 /// The lowest limit, in bins.
 const LOWEST: usize = 24;
 /// Rounds at one level.
@@ -39,6 +41,14 @@ pub(in crate::gap) fn moves(
     let scale = first.motion.scale(piece.joint.unwrap_or(0));
     let mut all = Vec::new();
     for (k, coordinate) in effect.coordinates.iter().enumerate() {
+        if let (Role::Waves { .. }, Some(joint)) = (coordinate.role, piece.joint) {
+            all.push(Move {
+                coordinate: k,
+                step: 0.5 * resolution(records, joint),
+                is_factor: false,
+            });
+            continue;
+        }
         let (Role::Shape(values) | Role::Choice(values)) = coordinate.role else { continue };
         let tried = values(&scale);
         let value = piece.shape[k];
@@ -58,6 +68,14 @@ pub(in crate::gap) fn moves(
     all
 }
 
+/// Orders of waves over the position of a joint that are told apart \[1/rad\].
+#[must_use]
+pub(super) fn resolution(records: &[Record<'_>], joint: usize) -> f64 {
+    let all = || records.iter().flat_map(|of| &of.motion.q[joint]).copied();
+    let range = all().fold(f64::NEG_INFINITY, f64::max) - all().fold(f64::INFINITY, f64::min);
+    PI / range.max(1e-6)
+}
+
 /// The lowest limit of frequencies \[Hz\].
 #[must_use]
 pub(in crate::gap) fn lowest(records: &[Record<'_>]) -> f64 {
@@ -75,15 +93,24 @@ pub(in crate::gap) fn refined(
     lowest: f64,
     reshape: &dyn Fn(&PieceRows, &[f64]) -> PieceRows,
 ) -> PieceRows {
+    let [low, all] =
+        [lowest, f64::INFINITY].map(|below| climbed(gains, piece, moves, below, reshape));
+    if gains.of(&low, f64::INFINITY) > gains.of(&all, f64::INFINITY) { low } else { all }
+}
+
+/// The same by one search, which begins with the frequencies `below` \[Hz\].
+#[must_use]
+pub(super) fn climbed(
+    gains: &Gains<'_>,
+    piece: &PieceRows,
+    moves: &[Move],
+    below: f64,
+    reshape: &dyn Fn(&PieceRows, &[f64]) -> PieceRows,
+) -> PieceRows {
     if moves.is_empty() {
         return piece.clone();
     }
-    let climb = Climb { gains, moves, reshape };
-    let start = reshape(piece, &piece.shape);
-    let both = [lowest, f64::INFINITY].map(|below| climb.from(&start, below));
-    let [a, b] = both.each_ref().map(|of| gains.of(of, f64::INFINITY));
-    let [low, all] = both;
-    if a > b { low } else { all }
+    Climb { gains, moves, reshape }.from(&reshape(piece, &piece.shape), below)
 }
 
 /// A pattern search.

@@ -12,6 +12,8 @@ pub enum Gate {
     JointEvidence,
     /// Share of the effect in a joint's torque \[1\], at least.
     Size,
+    /// Deviations by which the law differs from 0, whatever its shape \[1\], at least.
+    Significance,
     /// Share of the effect beside the largest one at the joint with which it may be confused
     /// \[1\], at least.
     Form,
@@ -49,9 +51,12 @@ impl Gate {
     #[must_use]
     pub fn is_upper(self) -> bool {
         match self {
-            Gate::Evidence | Gate::JointEvidence | Gate::Size | Gate::Form | Gate::Everyday => {
-                false
-            }
+            Gate::Evidence
+            | Gate::JointEvidence
+            | Gate::Size
+            | Gate::Significance
+            | Gate::Form
+            | Gate::Everyday => false,
             Gate::Bounds | Gate::Noise | Gate::HeldOut | Gate::Unexplained | Gate::Class => true,
         }
     }
@@ -63,6 +68,7 @@ impl Gate {
             Gate::Evidence => "evidence, nats",
             Gate::JointEvidence => "evidence of the joint, nats",
             Gate::Size => "share of the joint's torque",
+            Gate::Significance => "deviations of the law from 0",
             Gate::Form => "size beside a law that it may be a form of",
             Gate::Everyday => "deviations of what any robot has",
             Gate::Bounds => "deviations beyond what is possible",

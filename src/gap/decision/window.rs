@@ -1,17 +1,22 @@
 //! Effects that act for a part of each repetition, or of a log.
 //!
-//! What acts in a window is the sum of what acts in its parts. Where windows begin and end is looked for
-//! at low frequencies, too: they see no single row.
+//! What acts in a window is the sum of what acts in its parts: the products of the parts tell what each
+//! window would gain. The best ones are moved until their ends fit.
 
-use super::shape::{Move, lowest, refined};
+use super::shape::{Move, climbed, lowest};
 use crate::arm::effects::Effect;
 use crate::gap::data::Record;
-use crate::gap::design::{Design, PieceRows, Times, Whole};
+use crate::gap::design::{Design, PieceRows, Rise, Times, Whole};
 use crate::gap::posterior::Gains;
 
-/// Parts of a repetition at which windows begin and end, and their lengths in parts.
-const PARTS: usize = 20;
-const LENGTHS: [usize; 5] = [1, 2, 3, 5, 8];
+/// Parts of a repetition at which windows begin and end, and those of the longest window: what acts for
+/// more than half of the time stops for a window.
+const PARTS: usize = 96;
+const LONGEST: usize = PARTS / 2;
+/// Parts in which something can be seen to grow and fall.
+const LEAST_GROWING: usize = 6;
+/// Times that an interval is halved: to a millionth of a window.
+const HALVED: usize = 20;
 /// Windows from which the best one is looked for.
 const STARTS: usize = 2;
 /// Least gain of a window that is looked at further \[nats\].
@@ -22,6 +27,8 @@ pub(super) struct Windows {
     whole: Whole,
     /// Duration of a part \[s\].
     part: f64,
+    /// Duration of the shortest window \[s\]: a part, and what the frequencies of the logs resolve.
+    shortest: f64,
     times: Times,
     /// What acts in each part.
     parts: PieceRows,
@@ -41,9 +48,10 @@ impl Windows {
         let [begins, ends] = if closed { [0.0, first.duration()] } else { range(records) };
         let part = (ends - begins) / PARTS as f64;
         let period = if closed { ends } else { 0.0 };
-        let times = Times { begins, period, choices: PARTS * LENGTHS.len() };
+        let times = Times { begins, period, choices: PARTS * LONGEST };
         let parts = whole.parts(design, records, (part, PARTS), &times);
-        Some(Windows { whole, part, times, parts })
+        let resolved = first.duration() / first.bins().max(1) as f64;
+        Some(Windows { whole, part, shortest: part.max(resolved), times, parts })
     }
 
     /// The best windows beside a fit.
@@ -53,60 +61,109 @@ impl Windows {
         design: &Design,
         gains: &Gains<'_>,
     ) -> Vec<PieceRows> {
-        let limits = [lowest(records), f64::INFINITY];
-        let mut best: Vec<PieceRows> = Vec::new();
-        for below in limits {
-            for window in self.starts(gains, below) {
-                let within = |shape: &[f64]| {
-                    let mut shape = shape.to_vec();
-                    let n = shape.len();
-                    shape[n - 2] = shape[n - 2].max(shape[n - 3]);
-                    if let Some((k, most)) = self.whole.rise() {
-                        shape[k] = shape[k].clamp(0.0, most);
-                    }
-                    self.whole.within(design, records, shape, &self.times)
-                };
-                let piece = within(&self.whole.shape(window, &self.times));
-                let n = piece.shape.len();
-                let by = |coordinate, step| Move { coordinate, step, is_factor: false };
-                let mut moves = vec![by(n - 3, 0.5 * self.part), by(n - 2, 0.5 * self.part)];
-                let climb = |from: &PieceRows, moves: &[Move]| {
-                    refined(gains, from, moves, lowest(records), &|_, shape| within(shape))
-                };
-                let at_once = climb(&piece, &moves);
-                if let Some((k, most)) = self.whole.rise() {
-                    moves.push(by(k, 0.5 * most));
-                    best.push(climb(&at_once, &moves));
-                }
-                best.push(at_once);
+        let within = |from: &PieceRows, shape: &[f64]| {
+            let mut shape = shape.to_vec();
+            let n = shape.len();
+            if let Some(Rise { coordinate: k, most, share }) = self.whole.rise() {
+                shape[k] = shape[k].clamp(0.0, most);
+                // What grows more slowly lasts longer: half of it is there from and to the same times.
+                let [before, now] =
+                    [from.shape[k], shape[k]].map(|rise| half_of(|x| share(rise, x)));
+                let longer = 0.5 * ((1.0 - 2.0 * before) / (1.0 - 2.0 * now) - 1.0);
+                let more = longer * (shape[n - 2] - shape[n - 3]);
+                shape[n - 3] -= more;
+                shape[n - 2] += more;
+            }
+            shape[n - 2] = shape[n - 2].max(shape[n - 3] + self.shortest);
+            self.whole.within(design, records, shape, &self.times)
+        };
+        let n = self.parts.effect.coordinates.len();
+        let by = |coordinate, step| Move { coordinate, step, is_factor: false };
+        let lowest = lowest(records);
+        let at = |[start, end]: [f64; 2], rise: Option<(usize, f64)>| {
+            let mut shape = self.whole.shape([start, end], &self.times);
+            if let Some((k, value)) = rise {
+                shape[k] = value;
+            }
+            self.whole.within(design, records, shape, &self.times)
+        };
+        let mut all = Vec::new();
+        for window in self.at_once(gains, lowest) {
+            let ends = [by(n - 3, 0.5 * self.part), by(n - 2, 0.5 * self.part)];
+            all.push(climbed(gains, &at(window, None), &ends, 2.0 * lowest, &within));
+        }
+        if let Some(Rise { coordinate: k, most, share }) = self.whole.rise() {
+            for window in self.growing(gains, &|x| share(0.5 * most, x), lowest) {
+                // It has no sharp ends: they are looked for in larger steps.
+                let step = 0.1 * (window[1] - window[0]);
+                let moves = [by(k, 0.25 * most), by(n - 3, step), by(n - 2, step)];
+                let start = at(window, Some((k, 0.5 * most)));
+                all.push(climbed(gains, &start, &moves, 2.0 * lowest, &within));
             }
         }
-        best
+        all
     }
 
-    /// Windows that begin and end with parts and explain most, apart from each other.
-    fn starts(&self, gains: &Gains<'_>, below: f64) -> Vec<[f64; 2]> {
-        let windows: Vec<[usize; 2]> = LENGTHS
-            .iter()
-            .flat_map(|length| (0..PARTS).map(move |begin| [begin, begin + length]))
-            .filter(|[_, end]| self.times.period > 0.0 || *end <= PARTS)
-            .collect();
-        let of_windows = gains.of_sums(&self.parts, PARTS, &windows, below);
-        let mut all: Vec<(f64, [usize; 2])> = of_windows.into_iter().zip(windows).collect();
-        all.sort_by(|a, b| b.0.total_cmp(&a.0));
+    /// The best windows in which an effect is there at once, by the frequencies `below` \[Hz\]; in s.
+    fn at_once(&self, gains: &Gains<'_>, below: f64) -> Vec<[f64; 2]> {
+        let gains = gains.of_windows(&self.parts, PARTS, below);
+        let all = (0..PARTS).flat_map(|from| {
+            let gains = gains.at_once(from, LONGEST.min(self.last() - from));
+            gains.into_iter().enumerate().map(move |(k, gain)| (gain, [from, from + k + 1]))
+        });
+        self.starts(all.collect())
+    }
+
+    /// The best windows in which an effect grows and falls with a share of the part of the
+    /// window \[s\].
+    fn growing(&self, gains: &Gains<'_>, share: &dyn Fn(f64) -> f64, below: f64) -> Vec<[f64; 2]> {
+        let gains = gains.of_windows(&self.parts, PARTS, below);
+        let mut all = Vec::new();
+        for count in
+            (LEAST_GROWING..=LONGEST).filter(|count| count % (1 + count / LEAST_GROWING) == 0)
+        {
+            let part = |k: usize| share((k as f64 + 0.5) / count as f64);
+            let shares: Vec<f64> = (0..count).map(part).collect();
+            let froms = (0..PARTS).filter(|from| from + count <= self.last());
+            all.extend(froms.map(|from| (gains.of(from, &shares), [from, from + count])));
+        }
+        self.starts(all)
+    }
+
+    /// The windows that explain most, apart from each other \[s\].
+    fn starts(&self, mut all: Vec<(f64, [usize; 2])>) -> Vec<[f64; 2]> {
         let least = LEAST + (self.times.choices as f64).ln();
+        all.retain(|(gain, _)| *gain > least);
+        all.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut best: Vec<[usize; 2]> = Vec::new();
-        for (_, [a, b]) in all.into_iter().take_while(|(gain, _)| *gain > least) {
-            let is_apart =
-                |[c, d]: &[usize; 2]| 2 * b.min(*d).saturating_sub(a.max(*c)) <= (b - a).min(d - c);
-            if best.len() < STARTS && best.iter().all(is_apart) {
-                best.push([a, b]);
+        for (_, window) in all {
+            if best.len() < STARTS && best.iter().all(|known| are_apart(*known, window)) {
+                best.push(window);
             }
         }
-        best.into_iter()
-            .map(|window| window.map(|k| self.times.begins + self.part * k as f64))
-            .collect()
+        let time = |k: usize| self.times.begins + self.part * k as f64;
+        best.into_iter().map(|window| window.map(time)).collect()
     }
+
+    /// The last part at which a window may end: it may go on over the end of a period.
+    fn last(&self) -> usize {
+        if self.times.period > 0.0 { 2 * PARTS } else { PARTS }
+    }
+}
+
+/// Whether two windows have less than half of the shorter one in common.
+fn are_apart([a, b]: [usize; 2], [c, d]: [usize; 2]) -> bool {
+    2 * b.min(d).saturating_sub(a.max(c)) <= (b - a).min(d - c)
+}
+
+/// The part of a window at which a share that grows from it to the middle is a half.
+fn half_of(share: impl Fn(f64) -> f64) -> f64 {
+    let (mut low, mut high) = (0.0, 0.5);
+    for _ in 0..HALVED {
+        let x = 0.5 * (low + high);
+        if share(x) < 0.5 { low = x } else { high = x }
+    }
+    0.5 * (low + high)
 }
 
 /// The first and the last time of records \[s\].

@@ -7,7 +7,7 @@ use crate::gap::tunables::Tunables;
 pub(super) type Functions = Vec<Vec<Vec<f64>>>;
 
 /// Angles and times in which functions fade after a reversal, over the usual ones.
-const ANGLES: [f64; 4] = [0.33, 1.0, 3.0, 10.0];
+const ANGLES: [f64; 5] = [0.1, 0.33, 1.0, 3.0, 10.0];
 const TIMES: [f64; 2] = [1.0, 3.0];
 
 /// Number of functions of a variable.

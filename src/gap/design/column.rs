@@ -74,7 +74,8 @@ pub(super) fn pieces(effect: &'static Effect, records: &[Record<'_>], joint: usi
         .map(|coordinate| match coordinate.role {
             Role::Linear => vec![(coordinate.usual)(&scale)],
             Role::Shape(values) | Role::Choice(values) => values(&scale),
-            Role::Rise { .. } => Vec::new(),
+            Role::OnlyJoint => (0..=first.motion.model.dof).map(|joint| joint as f64).collect(),
+            Role::Rise { .. } | Role::Waves { .. } => Vec::new(),
         })
         .collect();
     let mut shapes = vec![Vec::new()];

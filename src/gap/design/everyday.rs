@@ -92,7 +92,7 @@ pub(super) fn everyday(records: &[Record<'_>], joint: usize, tunables: &Tunables
         push(&mut all, Group::OtherPosition, torque, series);
     }
     push(&mut all, Group::Fixed, 1.0, lagged(&motions, joint, tunables.joint_lag));
-    all.extend(of_logs(records, joint));
+    all.extend(of_logs(records, joint, tunables));
     all
 }
 
@@ -128,18 +128,28 @@ fn lagged(motions: &[&Motion<'_>], joint: usize, lag: f64) -> Vec<Vec<f64>> {
     motions.iter().map(of).collect()
 }
 
-/// Friction that differs between logs, and, in a drift, between repetitions.
-fn of_logs(records: &[Record<'_>], joint: usize) -> Vec<Local> {
+/// Half waves over a log in which its friction varies.
+const PARTS: usize = 8;
+
+/// Friction that differs between logs, and, in a drift, between repetitions. In a log that does not
+/// repeat it varies with time.
+fn of_logs(records: &[Record<'_>], joint: usize, tunables: &Tunables) -> Vec<Local> {
     let mut all = Vec::new();
     for (number, record) in records.iter().enumerate() {
         let motion = &record.motion;
         let scale = motion.scale(joint);
+        let time = Range::of(motion.t.iter());
+        let waves = if motion.closed { 0 } else { PARTS };
         for (size, series) in
             [(scale.coulomb, &motion.senses[joint]), (scale.viscous, &motion.rates[joint])]
         {
-            let mut by_record = vec![Vec::new(); records.len()];
-            by_record[number] = series.iter().map(|x| size * x).collect();
-            all.push(Local { group: Group::LogFriction, series: by_record });
+            for wave in 0..=waves {
+                let size = if wave == 0 { size } else { size * roughness(wave as f64, tunables) };
+                let of = |(x, t): (&f64, &f64)| size * x * time.wave(*t, wave);
+                let mut by_record = vec![Vec::new(); records.len()];
+                by_record[number] = series.iter().zip(&motion.t).map(of).collect();
+                all.push(Local { group: Group::LogFriction, series: by_record });
+            }
         }
     }
     all

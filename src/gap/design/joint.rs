@@ -69,6 +69,8 @@ pub struct JointDesign {
     pub transposed: DMatrix<f64>,
     /// Groups of the everyday errors.
     pub groups: Vec<Group>,
+    /// Whether a log shows how its repetitions drift.
+    pub shows_drift: bool,
     /// Products of `[y, base]` of each cell.
     pub(in crate::gap) grams: Vec<Packed>,
 }
@@ -102,6 +104,7 @@ impl JointDesign {
             base: DMatrix::zeros(0, 0),
             transposed: DMatrix::zeros(0, 0),
             groups: Vec::new(),
+            shows_drift: records.iter().any(|record| record.kind == RecordKind::Drift),
             grams: Vec::new(),
         };
         let mut y = DVector::zeros(height);
@@ -145,6 +148,22 @@ impl JointDesign {
                 to[cell.rows.clone()].copy_from_slice(&from[cell.source.clone()]);
             }
         }
+    }
+
+    /// Rows by record, those that are not used 0.
+    #[must_use]
+    pub(in crate::gap) fn by_record(
+        &self,
+        records: &[Record<'_>],
+        rows: &DVector<f64>,
+    ) -> Vec<Vec<f64>> {
+        let count = |record: &Record<'_>| first_row(record.bins());
+        let mut all: Vec<Vec<f64>> = records.iter().map(|of| vec![0.0; count(of)]).collect();
+        for cell in &self.cells {
+            let from = &rows.as_slice()[cell.rows.clone()];
+            all[cell.record][cell.source.clone()].copy_from_slice(from);
+        }
+        all
     }
 
     /// Number of rows below a frequency \[Hz\].

@@ -3,20 +3,17 @@
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-use super::basis::{Functions, fades, functions, rms};
 use super::brought::{Brought, BroughtEffect};
 use super::column::{Column, Piece, columns_at, pieces};
 use super::problem::Design;
 use super::set::Set;
 use crate::arm::dynamics::RIGID;
-use crate::arm::effects::{self, Coordinate, Effect, Form, Motion, Nature, Role, Scope};
+use crate::arm::effects::{self, Coordinate, Effect, Form, Nature, Role, Scope};
 use crate::arm::robot::Model;
-use crate::gap::data::{Record, RecordKind};
+use crate::gap::data::Record;
 
 /// Deviation of a factor that is known.
 const FIXED: f64 = 1e-6;
-/// Root mean square of functions of unit size that are seen at all.
-const SEEN: f64 = 1e-6;
 
 /// Rows of one effect at one joint, for one choice of its shape.
 #[derive(Clone)]
@@ -73,12 +70,12 @@ impl Whole {
         shape
     }
 
-    /// The place of the coordinate by which the effect grows in its window, with its largest value.
+    /// How the effect grows in its window, where it may.
     #[must_use]
-    pub(in crate::gap) fn rise(&self) -> Option<(usize, f64)> {
+    pub(in crate::gap) fn rise(&self) -> Option<Rise> {
         let mut of = self.effect.coordinates.iter().enumerate();
-        of.find_map(|(k, of)| match of.role {
-            Role::Rise { most, .. } => Some((k, most)),
+        of.find_map(|(coordinate, of)| match of.role {
+            Role::Rise { most, share } => Some(Rise { coordinate, most, share }),
             _ => None,
         })
     }
@@ -141,6 +138,16 @@ impl Whole {
         let piece = Piece { joint: self.joint, shape, choices: times.choices, columns };
         to_rows(design, records, self.effect, piece)
     }
+}
+
+/// How an effect grows in its window.
+pub(in crate::gap) struct Rise {
+    /// The place of its coordinate.
+    pub coordinate: usize,
+    /// The largest value.
+    pub most: f64,
+    /// The share that acts, from the value and the part of the window that is over.
+    pub share: fn(f64, f64) -> f64,
 }
 
 /// How windows come again.
@@ -207,14 +214,34 @@ pub(in crate::gap) fn piece_rows(
         .flat_map_iter(|(effect, joint)| {
             let own = pieces(effect, records, joint).into_iter();
             let own: Vec<_> = own.map(|of| to_rows(design, records, effect, of)).collect();
-            let mut reached: Vec<usize> =
-                own.iter().flat_map(|of| of.rows.iter().map(|(joint, _)| *joint)).collect();
-            reached.sort_unstable();
-            reached.dedup();
-            let brought = brought_rows(design, records, effect, (joint, &reached));
+            let brought = brought_rows(design, records, effect, (joint, &reached(&own)));
             own.into_iter().map(|of| of.with_brought(&brought)).collect::<Vec<_>>()
         })
         .collect()
+}
+
+/// A piece in other records, with what it brings along there.
+pub(in crate::gap) fn piece_at(
+    design: &Design,
+    records: &[Record<'_>],
+    of: &PieceRows,
+) -> PieceRows {
+    let joint = of.joint.unwrap_or(0);
+    let columns = columns_at(of.effect, records, joint, &of.shape, true);
+    let piece = Piece { joint: of.joint, shape: of.shape.clone(), choices: of.choices, columns };
+    let own = to_rows(design, records, of.effect, piece);
+    let reached = reached(std::slice::from_ref(&own));
+    let brought = brought_rows(design, records, of.effect, (joint, &reached));
+    own.with_brought(&brought)
+}
+
+/// Joints that pieces reach.
+fn reached(pieces: &[PieceRows]) -> Vec<usize> {
+    let mut all: Vec<usize> =
+        pieces.iter().flat_map(|of| of.rows.iter().map(|(joint, _)| *joint)).collect();
+    all.sort_unstable();
+    all.dedup();
+    all
 }
 
 /// Pieces of the parameters of each link.
@@ -248,6 +275,18 @@ pub(in crate::gap) fn link_pieces(design: &Design, effect: &'static Effect) -> P
 }
 
 impl PieceRows {
+    /// An effect at a joint, of so many shapes, without rows.
+    #[must_use]
+    pub(in crate::gap) fn of_shape(
+        effect: &'static Effect,
+        joint: usize,
+        shape: Vec<f64>,
+        choices: usize,
+    ) -> PieceRows {
+        let (prior, rows, brought) = (Vec::new(), Vec::new(), Vec::new());
+        PieceRows { effect, joint: Some(joint), shape, choices, own: 0, prior, rows, brought }
+    }
+
     /// The same effect with other values of its shape; tangents tell how it changes with them.
     #[must_use]
     pub fn reshaped(
@@ -272,6 +311,13 @@ impl PieceRows {
         let tangents = self.prior[..self.own].iter_mut().enumerate().filter(|(k, _)| k % width > 0);
         tangents.for_each(|(_, prior)| prior.1 = FIXED);
         self
+    }
+
+    /// The piece with these values of its coordinates, all of which are linear.
+    pub(in crate::gap) fn hold(&mut self, coordinates: &[f64]) {
+        for ((prior, value), usual) in self.prior.iter_mut().zip(coordinates).zip(&self.shape) {
+            *prior = (value / usual, FIXED);
+        }
     }
 
     /// What it brings along within what can be: factors that are beyond that are at the bound. Whether
@@ -321,81 +367,6 @@ impl PieceRows {
         self.prior.extend(&brought.prior);
         self.brought.clone_from(&brought.effects);
         self
-    }
-
-    /// Functions by which the form of its law may differ, of unit size: by joint, with their rows.
-    #[must_use]
-    pub fn forms(&self, design: &Design, records: &[Record<'_>]) -> Vec<(usize, DMatrix<f64>)> {
-        let Some(variable) = self.effect.variable else { return Vec::new() };
-        self.forms_of(design, records, &|motions, joint| {
-            let mut all = functions(variable, motions, joint, &design.tunables);
-            all.extend(self.after_reversals(design, motions, joint));
-            all
-        })
-    }
-
-    /// Those of them that are there after reversals alone.
-    #[must_use]
-    pub fn forms_after_reversals(
-        &self,
-        design: &Design,
-        records: &[Record<'_>],
-    ) -> Vec<(usize, DMatrix<f64>)> {
-        self.forms_of(design, records, &|motions, joint| {
-            self.after_reversals(design, motions, joint)
-        })
-    }
-
-    /// Rows of functions of the motions at each of its joints, in the logs as they are now.
-    fn forms_of(
-        &self,
-        design: &Design,
-        records: &[Record<'_>],
-        functions: &dyn Fn(&[&Motion<'_>], usize) -> Functions,
-    ) -> Vec<(usize, DMatrix<f64>)> {
-        let motions: Vec<&Motion<'_>> = records.iter().map(|record| &record.motion).collect();
-        let of_joint = |joint: usize| {
-            let all = functions(&motions, joint);
-            let of = &design.joints[joint];
-            let mut rows = DMatrix::zeros(of.y.len(), all.len());
-            for (k, series) in all.iter().enumerate() {
-                let now = |(series, record): (&Vec<f64>, &Record<'_>)| -> Vec<f64> {
-                    if record.kind == RecordKind::Mean { series.clone() } else { Vec::new() }
-                };
-                let series: Vec<Vec<f64>> = series.iter().zip(records).map(now).collect();
-                let series: Vec<&[f64]> = series.iter().map(Vec::as_slice).collect();
-                of.rows_of(records, &series, rows.column_mut(k).as_mut_slice());
-            }
-            (joint, rows)
-        };
-        let own = |joint: &usize| self.joint.is_none_or(|own| own == *joint);
-        let joints = self.rows.iter().map(|(joint, _)| *joint).filter(own).map(of_joint);
-        let is_there = |rows: &DMatrix<f64>| {
-            rows.norm() > SEEN * f64::sqrt((rows.nrows() * rows.ncols()) as f64)
-        };
-        joints.filter(|(_, rows)| is_there(rows)).collect()
-    }
-
-    /// A law of friction after each reversal, from which on it builds up: of the size that is usual of
-    /// dry friction, over that of a form.
-    fn after_reversals(&self, design: &Design, motions: &[&Motion<'_>], joint: usize) -> Functions {
-        if !matches!(self.effect.form, Form::Law { dissipates: true, .. }) {
-            return Vec::new();
-        }
-        let of_motion = |m: &&Motion<'_>| -> Vec<f64> {
-            let added = self.effect.added(m, joint, &self.shape);
-            let own = added.into_iter().find(|(of, _)| *of == joint);
-            own.map_or_else(|| vec![0.0; m.rows()], |(_, series)| series)
-        };
-        let law: Vec<Vec<f64>> = motions.iter().map(of_motion).collect();
-        let tunables = &design.tunables;
-        let size =
-            tunables.reversal / tunables.form / rms(law.iter().flatten()).max(f64::MIN_POSITIVE);
-        let mut all = fades(motions, joint, tunables);
-        for series in all.iter_mut().flat_map(|fade| fade.iter_mut().zip(&law)) {
-            series.0.iter_mut().zip(series.1).for_each(|(x, law)| *x *= size * law);
-        }
-        all
     }
 
     /// Whether its shape acts by itself: it has no amplitude.

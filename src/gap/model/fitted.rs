@@ -25,6 +25,9 @@ pub struct Fitted {
     pub parameters: Vec<f64>,
     /// Their standard deviations.
     pub deviations: Vec<f64>,
+    /// Deviations by which the law itself differs from 0, with its shape as it is; `None` where that acts
+    /// by itself.
+    pub significance: Option<f64>,
 }
 
 impl Fitted {
@@ -39,7 +42,8 @@ impl Fitted {
         {
             coordinates = body;
         }
-        with_deviations(piece.effect, piece.joint, &coordinates, &spread)
+        let significance = significance(piece.effect, factors, covariance);
+        Fitted { significance, ..with_deviations(piece.effect, piece.joint, &coordinates, &spread) }
     }
 
     /// All pieces of a fit.
@@ -92,13 +96,36 @@ impl Fitted {
     }
 
     /// The largest parameter of which any robot has some, over what is usual of it; `None` without
-    /// such a parameter.
+    /// such a parameter, or where one joint alone has it.
     #[must_use]
     pub fn over_everyday(&self) -> Option<f64> {
+        let mut coordinates = self.effect.coordinates.iter().zip(&self.coordinates);
+        if coordinates.any(|(of, joint)| matches!(of.role, Role::OnlyJoint) && *joint != 0.0) {
+            return None;
+        }
         let values = self.effect.parameters.iter().zip(&self.parameters);
         let usual = values.filter(|(of, _)| of.everyday > 0.0);
         usual.map(|(of, value)| value.abs() / of.everyday).reduce(f64::max)
     }
+}
+
+/// Deviations by which the factors of the linear coordinates differ from 0 together, at the shape as it
+/// is.
+fn significance(effect: &Effect, factors: &DVector<f64>, covariance: &DMatrix<f64>) -> Option<f64> {
+    let count = |is: fn(&Role) -> bool| effect.coordinates.iter().filter(|of| is(&of.role)).count();
+    let width = 1 + count(|role| matches!(role, Role::Shape(_)));
+    let linear: Vec<usize> =
+        (0..count(|role| matches!(role, Role::Linear))).map(|k| k * width).collect();
+    if linear.is_empty() || factors.len() > linear.len() * width {
+        return None;
+    }
+    // Where all else is 0, the precision is that of these rows, and right-hand sides stay.
+    let precision = covariance.clone().cholesky()?.inverse();
+    let right = &precision * factors;
+    let right = DVector::from_fn(linear.len(), |k, _| right[linear[k]]);
+    let own =
+        DMatrix::from_fn(linear.len(), linear.len(), |i, k| precision[(linear[i], linear[k])]);
+    Some(right.dot(&own.cholesky()?.solve(&right)).sqrt())
 }
 
 /// Coordinates of the columns' factors, and how they change with these.
@@ -175,5 +202,6 @@ fn with_deviations(
         coordinates: coordinates.to_vec(),
         parameters,
         deviations: covariance.diagonal().iter().map(|x| x.max(0.0).sqrt()).collect(),
+        significance: None,
     }
 }

@@ -18,9 +18,21 @@ pub(in crate::gap) fn written(
     pieces: Vec<PieceRows>,
     comes_again: impl Fn(&Effect) -> bool,
 ) -> Improved {
-    let Some(fit) = fitted_as_written(design, records, pieces, None) else {
+    let mut pieces = pieces;
+    let Some(mut fit) = fitted_as_written(design, records, pieces.clone(), None) else {
         return Improved::same(model);
     };
+    // Parameters shared the torques of a load that was moved to the nearest body.
+    let mut is_moved = false;
+    for (piece, of) in pieces.iter_mut().zip(Fitted::of_fit(&fit)) {
+        if of.effect.is_load() {
+            piece.hold(&of.coordinates);
+            is_moved = true;
+        }
+    }
+    if is_moved && let Some(again) = fitted_as_written(design, records, pieces, Some(&fit)) {
+        fit = again;
+    }
     let Parameters { mixing, sizes, .. } = &design.parameters;
     let change = mixing * fit.mean.rows(0, mixing.ncols());
     let mut effects = Fitted::of_fit(&fit);

@@ -1,8 +1,9 @@
 //! The most probable sizes with a hypothesis, and the posterior that follows.
 
-use nalgebra::{Cholesky, DMatrix, DVector};
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+use super::blocked::Factor;
 use super::hypothesis::{Extra, Hypothesis, Member};
 use super::reduced::{Reduced, variance};
 use super::sizes::{JointSizes, LAWS, NOISE, Size, Sizes, WRITTEN, without_everyday};
@@ -38,6 +39,8 @@ const CONVERGED: f64 = 0.5;
 const AS_WRITTEN: [usize; 2] = [8, 32];
 /// Deviation of a parameter that keeps its value, of its usual one.
 const KEPT: f64 = 1e-3;
+/// Steps of the amplitudes before those of all sizes.
+const AMPLITUDES: usize = 5;
 /// Curvature that is added where a size hardly matters.
 const LEAST_CURVATURE: f64 = 0.3;
 
@@ -99,7 +102,12 @@ fn fit_from(
         extra,
     };
     fit.start_forms(design);
-    fit.reduce(design, |_| true)?;
+    fit.reduce(design, start.reduced)?;
+    // Effects take their sizes first, or everyday errors grow in their place.
+    for _ in 0..if most > 0 { AMPLITUDES } else { 0 } {
+        fit.amplitude_step(design.parameters.count());
+        fit.solve(design.parameters.count(), &design.parameters)?;
+    }
     // Sizes that are far off need more steps.
     let mut before = f64::NEG_INFINITY;
     for round in 0..most {
@@ -111,8 +119,7 @@ fn fit_from(
         if fit.step(design, &start.is_open).is_none() {
             // Sizes of which nothing can be computed.
             (fit.sizes, fit.amplitudes) = known;
-            fit.reduced.clear();
-            fit.reduce(design, |_| true)?;
+            fit.reduce(design, vec![None; design.joints.len()])?;
             break;
         }
     }
@@ -123,8 +130,8 @@ impl Fit {
     /// What another fit may begin with.
     #[must_use]
     pub(in crate::gap) fn known(&self) -> Known<'_> {
-        let Fit { hypothesis, sizes, amplitudes, .. } = self;
-        Known { hypothesis, sizes, amplitudes }
+        let Fit { hypothesis, sizes, amplitudes, reduced, .. } = self;
+        Known { hypothesis, sizes, amplitudes, reduced }
     }
 
     /// Bounds what pieces bring along that are its members from number `first` on; whether one was
@@ -148,7 +155,7 @@ impl Fit {
     }
 
     /// Prior standard deviations and means of the effects' factors.
-    fn prior(&self) -> (Vec<f64>, Vec<f64>) {
+    pub(super) fn prior(&self) -> (Vec<f64>, Vec<f64>) {
         let mut sds = Vec::new();
         let mut means = Vec::new();
         for (member, amplitude) in self.hypothesis.members.iter().zip(&self.amplitudes) {
@@ -180,27 +187,16 @@ impl Fit {
         }
     }
 
-    /// Marginalises the everyday errors of joints anew, then all else.
-    fn reduce(&mut self, design: &Design, is_changed: impl Fn(usize) -> bool + Sync) -> Option<()> {
+    /// Marginalises the everyday errors of joints that are not known yet, then all else.
+    fn reduce(&mut self, design: &Design, known: Vec<Option<Reduced>>) -> Option<()> {
         let parameters = design.parameters.count();
-        let old: Vec<Option<Reduced>> = if self.reduced.is_empty() {
-            design.joints.iter().map(|_| None).collect()
-        } else {
-            std::mem::take(&mut self.reduced).into_iter().map(Some).collect()
+        let new = |joint: usize| {
+            let (extra, sizes) = (&self.extra[joint], &self.sizes[joint]);
+            Reduced::new(&design.joints[joint], parameters, extra, sizes)
         };
-        let all: Option<Vec<Reduced>> = old
-            .into_par_iter()
-            .enumerate()
-            .map(|(joint, old)| match old {
-                Some(old) if !is_changed(joint) => Some(old),
-                _ => Reduced::new(
-                    &design.joints[joint],
-                    parameters,
-                    &self.extra[joint],
-                    &self.sizes[joint],
-                ),
-            })
-            .collect();
+        let known = known.into_par_iter().enumerate();
+        let all: Option<Vec<Reduced>> =
+            known.map(|(joint, known)| known.or_else(|| new(joint))).collect();
         self.reduced = all?;
         self.solve(parameters, &design.parameters)
     }
@@ -239,13 +235,16 @@ impl Fit {
             }
         }
         let right = DVector::from_fn(n, |k, _| scale[k] * left[1 + k]);
-        let factor = Cholesky::new(scaled)?;
-        let moved = factor.solve(&right);
-        log_evidence -= factor.l_dirty().diagonal().iter().map(|x| x.ln()).sum::<f64>();
+        let factor = Factor::new(scaled)?;
+        let moved = factor
+            .solve(&DMatrix::from_columns(std::slice::from_ref(&right)))
+            .column(0)
+            .into_owned();
+        let inverse = factor.inverse();
+        log_evidence -= factor.log_det();
         log_evidence -= 0.5 * (squares - right.dot(&moved));
         log_evidence += self.sizes.iter().map(JointSizes::log_prior).sum::<f64>();
         log_evidence += self.amplitudes.iter().map(Size::log_prior).sum::<f64>();
-        let inverse = factor.inverse();
         self.covariance = DMatrix::from_fn(n, n, |i, k| scale[i] * scale[k] * inverse[(i, k)]);
         self.mean = DVector::from_fn(n, |k, _| {
             scale[k] * moved[k] + if k >= parameters { means[k - parameters] } else { 0.0 }
@@ -277,9 +276,10 @@ impl Fit {
             }
         }
         // What laws miss follows their sizes.
-        let has_laws: Vec<bool> =
-            (0..changed.len()).map(|joint| self.hypothesis.reaches(joint)).collect();
-        self.reduce(design, |joint| changed[joint] || has_laws[joint])
+        let old = std::mem::take(&mut self.reduced).into_iter().enumerate();
+        let is_same = |joint: usize| !changed[joint] && !self.hypothesis.reaches(joint);
+        let known = old.map(|(joint, old)| is_same(joint).then_some(old)).collect();
+        self.reduce(design, known)
     }
 
     /// A step of the amplitudes of the members.
@@ -449,9 +449,9 @@ impl Fit {
         let own = omega.view((size, size), (h + f, h + f)).into_owned();
         (0..design.cells.len())
             .map(|k| {
-                design.grams[k].dot(&base)
-                    + 2.0 * extra.with_base[k].dot(&with)
-                    + extra.own[k].dot(&own)
+                let more =
+                    |(w, o): (&DMatrix<f64>, &DMatrix<f64>)| 2.0 * w.dot(&with) + o.dot(&own);
+                design.grams[k].dot(&base) + extra.products(k).map_or(0.0, more)
             })
             .map(|missed| missed.max(0.0))
             .collect()

@@ -1,10 +1,12 @@
 //! What single pieces would add to a fit, at its sizes.
 
-use nalgebra::{Cholesky, DMatrix, DVector};
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+use super::amplitude::best;
 use super::fit::Fit;
 use super::reduced::variance;
+use super::windows::WindowGains;
 use crate::gap::design::{Design, PieceRows};
 
 /// A fit that answers what pieces would add.
@@ -57,6 +59,13 @@ impl<'a> Gains<'a> {
         Gains { design, fit, weighted }
     }
 
+    /// Weights of a joint's rows, and what is left of the difference.
+    #[must_use]
+    pub(in crate::gap) fn left(&self, joint: usize) -> (&DVector<f64>, &DVector<f64>) {
+        let of = &self.weighted[joint];
+        (&of.weights, &of.left)
+    }
+
     /// Products of pieces' columns with everything else marginalised: `A`, `b` of each; rows below
     /// a frequency \[Hz\].
     fn products(&self, pieces: &[&PieceRows], below: f64) -> Vec<(DMatrix<f64>, DVector<f64>)> {
@@ -84,7 +93,9 @@ impl<'a> Gains<'a> {
             if count == 0 || rows == 0 {
                 continue;
             }
-            let mut columns = DMatrix::zeros(rows, count);
+            // Products of narrow matrices are slow: empty columns make it a wide one.
+            let width = count.max(WIDE);
+            let mut columns = DMatrix::zeros(rows, width);
             let from = reached.iter().flat_map(|(_, rows)| rows.column_iter());
             for (mut to, from) in columns.column_iter_mut().zip(from) {
                 to.copy_from(&from.rows(0, rows));
@@ -93,9 +104,9 @@ impl<'a> Gains<'a> {
             let reduced = &self.fit.reduced[joint];
             let with_base = of.transposed.columns(0, rows) * &columns;
             let (h, everyday, f) = (extra.effects, of.groups.len(), extra.forms.len());
-            let mut with_local = DMatrix::zeros(everyday + f, count);
+            let mut with_local = DMatrix::zeros(everyday + f, width);
             with_local.rows_mut(0, everyday).copy_from(&with_base.rows(parameters, everyday));
-            let mut with_global = DMatrix::zeros(m, count);
+            let mut with_global = DMatrix::zeros(m, width);
             with_global.rows_mut(0, parameters).copy_from(&with_base.rows(0, parameters));
             if h + f > 0 {
                 let with_extra = extra.transposed.columns(0, rows) * &columns;
@@ -131,58 +142,46 @@ impl<'a> Gains<'a> {
         products.first().map_or(f64::NEG_INFINITY, |of| best(of, &piece.prior, spread))
     }
 
-    /// Gains of sums of the parts `from..to` of a piece whose columns are those of `count` parts, one
-    /// after another; parts after the last one are the first ones.
+    /// Squares of what is added by the first column of pieces, in deviations, everything of the fit
+    /// marginalised.
     #[must_use]
-    pub(in crate::gap) fn of_sums(
-        &self,
-        piece: &PieceRows,
-        count: usize,
-        sums: &[[usize; 2]],
-        below: f64,
-    ) -> Vec<f64> {
-        let width = piece.prior.len() / count;
-        let products = self.products(&[piece], below);
-        let Some((a, b)) = products.first() else { return Vec::new() };
-        let prior = &piece.prior[..width];
-        let gain = |[from, to]: &[usize; 2]| {
-            let mut sum = DMatrix::zeros(count * width, width);
-            for k in *from..*to {
-                sum.view_mut((width * (k % count), 0), (width, width)).fill_with_identity();
-            }
-            let of_sum = (sum.tr_mul(&(a * &sum)), sum.tr_mul(b));
-            best(&of_sum, prior, self.design.tunables.amplitude_spread)
-        };
-        sums.iter().map(gain).collect()
+    pub(in crate::gap) fn squares(&self, pieces: &[PieceRows]) -> Vec<f64> {
+        let all: Vec<&PieceRows> = pieces.iter().collect();
+        self.products(&all, f64::INFINITY).iter().map(|(a, _)| a[(0, 0)]).collect()
     }
 
-    /// Gains of all pieces, and what the columns gain by themselves that each brings along. What a
-    /// shape does by itself counts as far as it helps: the right shape may be between the tried ones.
+    /// Gains of windows of a piece whose columns are those of `count` parts, one after another; rows below
+    /// a frequency \[Hz\].
     #[must_use]
-    pub(in crate::gap) fn of_all(&self, pieces: &[PieceRows], below: f64) -> Vec<[f64; 2]> {
+    pub(in crate::gap) fn of_windows<'b>(
+        &self,
+        piece: &'b PieceRows,
+        count: usize,
+        below: f64,
+    ) -> WindowGains<'b> {
+        let prior = &piece.prior[..piece.prior.len() / count];
+        let products = self.products(&[piece], below).remove(0);
+        WindowGains::new(products, prior, self.design.tunables.amplitude_spread)
+    }
+
+    /// Gains of all pieces. What a shape does by itself counts as far as it helps: the right shape may be
+    /// between the tried ones.
+    #[must_use]
+    pub(in crate::gap) fn of_all(&self, pieces: &[PieceRows], below: f64) -> Vec<f64> {
         let spread = self.design.tunables.amplitude_spread;
-        let gains = |pieces: &[PieceRows]| -> Vec<[f64; 2]> {
+        let gains = |pieces: &[PieceRows]| -> Vec<f64> {
             let of: Vec<&PieceRows> = pieces.iter().collect();
-            let both = |(of, piece)| [most(of, piece, spread), brought(of, piece)];
-            self.products(&of, below).iter().zip(pieces).map(both).collect()
+            let all = self.products(&of, below);
+            all.iter().zip(pieces).map(|(of, piece)| most(of, piece, spread)).collect()
         };
         pieces.par_chunks(TOGETHER).flat_map_iter(gains).collect()
     }
 }
 
+/// Columns from which on nalgebra multiplies in blocks.
+const WIDE: usize = 6;
 /// Pieces whose products are computed together.
 const TOGETHER: usize = 64;
-
-/// What the columns gain that a piece brings along: it is none of its own.
-fn brought((a, b): &(DMatrix<f64>, DVector<f64>), piece: &PieceRows) -> f64 {
-    let count = piece.prior.len() - piece.own;
-    if count == 0 {
-        return 0.0;
-    }
-    let a = a.view((piece.own, piece.own), (count, count)).into_owned();
-    let b = b.rows(piece.own, count).into_owned();
-    gain(&a, &b, &piece.prior[piece.own..], 1.0).max(0.0)
-}
 
 /// The gain of a piece, of as much of it as helps where it acts by itself.
 fn most(products: &(DMatrix<f64>, DVector<f64>), piece: &PieceRows, spread: f64) -> f64 {
@@ -192,34 +191,4 @@ fn most(products: &(DMatrix<f64>, DVector<f64>), piece: &PieceRows, spread: f64)
         true => f64::NEG_INFINITY,
         false => best(products, &piece.prior, spread),
     }
-}
-
-/// The gain of a piece over the amplitudes that are tried.
-fn best((a, b): &(DMatrix<f64>, DVector<f64>), prior: &[(f64, f64)], spread: f64) -> f64 {
-    let is_fixed = prior.iter().any(|(mean, _)| *mean != 0.0);
-    let tried: &[f64] = if is_fixed { &[1.0] } else { &TRIED };
-    let gain =
-        |amplitude: &f64| gain(a, b, prior, *amplitude) - 0.5 * (amplitude.ln() / spread).powi(2);
-    tried.iter().map(gain).fold(f64::NEG_INFINITY, f64::max)
-}
-
-/// Amplitudes that are tried, over the usual one.
-const TRIED: [f64; 4] = [0.3, 1.0, 3.0, 10.0];
-
-/// The gain of columns with some prior.
-fn gain(a: &DMatrix<f64>, b: &DVector<f64>, prior: &[(f64, f64)], amplitude: f64) -> f64 {
-    let n = prior.len();
-    let mean = DVector::from_fn(n, |k, _| prior[k].0);
-    let moved = a * &mean;
-    let fixed = mean.dot(b) - 0.5 * mean.dot(&moved);
-    let left = b - moved;
-    let free: Vec<usize> = (0..n).filter(|k| prior[*k].1 > 0.0).collect();
-    let sd = |k: usize| amplitude * prior[free[k]].1;
-    let scaled = DMatrix::from_fn(free.len(), free.len(), |i, k| {
-        sd(i) * sd(k) * a[(free[i], free[k])] + if i == k { 1.0 } else { 0.0 }
-    });
-    let right = DVector::from_fn(free.len(), |k, _| sd(k) * left[free[k]]);
-    let Some(factor) = Cholesky::new(scaled) else { return f64::NEG_INFINITY };
-    let log_det: f64 = factor.l_dirty().diagonal().iter().map(|x| x.ln()).sum();
-    fixed + 0.5 * right.dot(&factor.solve(&right)) - log_det
 }

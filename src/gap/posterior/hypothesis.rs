@@ -32,10 +32,17 @@ pub(super) struct Extra {
     pub(super) forms: Vec<usize>,
     /// Mean square of the laws in a row of each cell \[N²m²\].
     pub(super) laws: Vec<f64>,
-    /// `[y, base]ᵀ E` by cell.
-    pub(super) with_base: Vec<DMatrix<f64>>,
+    /// `[y, base]ᵀ E` by cell; none where the hypothesis does not reach the joint.
+    with_base: Vec<DMatrix<f64>>,
     /// `Eᵀ E` by cell.
     pub(super) own: Vec<DMatrix<f64>>,
+}
+
+impl Extra {
+    /// `[y, base]ᵀ E` and `Eᵀ E` of a cell; `None` where the hypothesis does not reach the joint.
+    pub(super) fn products(&self, cell: usize) -> Option<(&DMatrix<f64>, &DMatrix<f64>)> {
+        Some((self.with_base.get(cell)?, self.own.get(cell)?))
+    }
 }
 
 impl Member {
@@ -98,7 +105,8 @@ impl Hypothesis {
         }
         let transposed_extra = columns.transpose();
         let (mut with_base, mut own) = (Vec::new(), Vec::new());
-        for cell in &of.cells {
+        let cells = if self.reaches(joint) { &of.cells[..] } else { &[] };
+        for cell in cells {
             let (from, count) = (cell.rows.start, cell.rows.len());
             let rows = columns.rows(from, count);
             let mut with = DMatrix::zeros(1 + of.base.ncols(), columns.ncols());

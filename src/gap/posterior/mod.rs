@@ -6,18 +6,22 @@
 //! groups of everyday errors maximise the marginal likelihood times their prior (empirical Bayes;
 //! D. `MacKay`, Bayesian interpolation, Neural Computation 4, 1992).
 
+mod amplitude;
+mod blocked;
 mod evidence;
 mod fit;
 mod gain;
 mod hypothesis;
+mod members;
 mod reduced;
 mod shares;
 mod sizes;
 mod start;
+mod windows;
 
 pub(in crate::gap) use evidence::Evidence;
 pub(in crate::gap) use fit::{Fit, fitted, fitted_as_written};
 pub(in crate::gap) use gain::Gains;
 pub(in crate::gap) use hypothesis::{Hypothesis, Member};
-pub(in crate::gap) use sizes::{Sizes, usual};
+pub(in crate::gap) use sizes::{Sizes, halfway, usual};
 pub(in crate::gap) use start::Start;

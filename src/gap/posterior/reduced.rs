@@ -1,7 +1,8 @@
 //! A joint with its everyday errors marginalised.
 
-use nalgebra::{Cholesky, DMatrix, Dyn};
+use nalgebra::DMatrix;
 
+use super::blocked::Factor;
 use super::hypothesis::Extra;
 use super::sizes::{JointSizes, LAWS, NOISE, WRITTEN};
 use crate::gap::design::{Cell, Group, JointDesign, Packed, Set};
@@ -19,7 +20,7 @@ pub(super) struct Reduced {
     /// Sum of the logarithms of the weights' roots.
     pub(super) log_weights: f64,
     /// Factor of `I + S Lᵀ W L S`.
-    pub(super) factor: Cholesky<f64, Dyn>,
+    pub(super) factor: Factor,
     /// `(I + S Lᵀ W L S)⁻¹ S Lᵀ W [y, P, H]`.
     pub(super) solved: DMatrix<f64>,
     /// S.
@@ -71,8 +72,10 @@ impl Products {
             let weight = 1.0 / variance;
             log_weights -= 0.5 * cell.rows.len() as f64 * variance.ln();
             base.add(weight, &design.grams[k]);
-            sum.with.zip_apply(&extra.with_base[k], |to, x| *to += weight * x);
-            sum.own.zip_apply(&extra.own[k], |to, x| *to += weight * x);
+            if let Some((with, own)) = extra.products(k) {
+                sum.with.zip_apply(with, |to, x| *to += weight * x);
+                sum.own.zip_apply(own, |to, x| *to += weight * x);
+            }
         }
         sum.base = base.whole();
         (sum, log_weights)
@@ -80,6 +83,17 @@ impl Products {
 }
 
 impl Reduced {
+    /// The same beside `effects` columns of effects that do not reach the joint; `first` is the number of
+    /// the difference and the parameters.
+    pub(super) fn beside(&self, first: usize, effects: usize) -> Reduced {
+        let mut global = DMatrix::zeros(first + effects, first + effects);
+        let own = self.global.view((0, 0), (first, first));
+        global.view_mut((0, 0), (first, first)).copy_from(&own);
+        let mut solved = DMatrix::zeros(self.solved.nrows(), first + effects);
+        solved.columns_mut(0, first).copy_from(&self.solved.columns(0, first));
+        Reduced { global, solved, sizes: self.sizes.clone(), factor: self.factor.clone(), ..*self }
+    }
+
     /// Marginalises the everyday errors of a joint; `None` if the products are no numbers.
     pub(super) fn new(
         design: &JointDesign,
@@ -133,10 +147,10 @@ impl Reduced {
         all.view_mut((0, first), (first, h)).copy_from(&sum.with.view((0, 0), (first, h)));
         all.view_mut((first, 0), (h, first)).tr_copy_from(&sum.with.view((0, 0), (first, h)));
         all.view_mut((first, first), (h, h)).copy_from(&sum.own.view((0, 0), (h, h)));
-        let factor = Cholesky::new(inner)?;
+        let factor = Factor::new(inner)?;
         let solved = factor.solve(&across);
         all -= across.transpose() * &solved;
-        let log_det = factor.l_dirty().diagonal().iter().map(|x| x.ln()).sum();
+        let log_det = factor.log_det();
         Some(Reduced { global: all, log_det, log_weights, factor, solved, sizes: scale })
     }
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use nalgebra::{Cholesky, DVector};
 
 use super::fit::Fit;
-use crate::arm::effects::Variable;
+use crate::arm::effects::{Acts, Variable};
 use crate::gap::design::{Cell, Design, Group, JointDesign, Set};
 
 /// Square of the share of the torque to which parameters are told from smooth errors.
@@ -50,7 +50,8 @@ impl Fit {
         largest.filter(|(share, _)| *share > error).map(|(_, of)| of)
     }
 
-    /// Share of members in a joint's torque in the logs as they are now: root mean square.
+    /// Share of members in a joint's torque in the logs as they are now: root mean square. Of what acts
+    /// over time, the change over all repetitions.
     #[must_use]
     pub(in crate::gap) fn share(
         &self,
@@ -59,6 +60,13 @@ impl Fit {
         joint: usize,
     ) -> f64 {
         self.product(design, [members.clone(), members], joint).sqrt()
+    }
+
+    /// Whether a member's share of some joint's torque is that of a finding.
+    #[must_use]
+    pub(in crate::gap) fn is_large(&self, design: &Design, member: usize) -> bool {
+        let least = design.least_share();
+        (0..design.joints.len()).any(|joint| self.share(design, member..member + 1, joint) >= least)
     }
 
     /// Correlation of the torques of two ranges of members at a joint.
@@ -77,12 +85,24 @@ impl Fit {
     /// Mean product of the torques of two ranges of members, of the mean square of the joint's.
     fn product(&self, design: &Design, members: [Range<usize>; 2], joint: usize) -> f64 {
         let of = &design.joints[joint];
+        let set = if members.iter().any(|of| self.drifts(of)) && of.shows_drift {
+            Set::Drift
+        } else {
+            Set::Now
+        };
         let [a, b] = members.map(|of| self.torque(design, of, joint));
-        let (product, power) = now(of).fold((0.0, 0.0), |(product, power), cell| {
+        let cells = of.cells.iter().filter(|cell| cell.set == set);
+        let products = cells.map(|cell| {
             let [a, b] = [&a, &b].map(|rows| rows.rows(cell.rows.start, cell.rows.len()));
-            (product + a.dot(&b), power + cell.power * cell.rows.len() as f64)
+            a.dot(&b)
         });
-        product / power.max(f64::MIN_POSITIVE)
+        products.sum::<f64>() / power(of).max(f64::MIN_POSITIVE)
+    }
+
+    /// Whether members act over time: what does not change from repetition to repetition is friction.
+    fn drifts(&self, members: &Range<usize>) -> bool {
+        let mut members = self.hypothesis.members[members.clone()].iter();
+        members.any(|member| member.piece.effect.acts == Acts::OverTime)
     }
 
     /// Rows of what members add to a joint's torque.
@@ -125,18 +145,20 @@ impl Fit {
         if let Some(factor) = Cholesky::new(gram) {
             smooth -= &own * factor.solve(&(&transposed * &smooth));
         }
-        let power: f64 = now(of).map(|cell| cell.power * cell.rows.len() as f64).sum();
-        smooth.norm_squared() / power.max(f64::MIN_POSITIVE)
+        smooth.norm_squared() / power(of).max(f64::MIN_POSITIVE)
     }
 }
 
 /// Mean square of an error that is given by range of frequencies, of the torque's.
 fn error(design: &Design, joint: usize, square: impl Fn(usize) -> f64) -> f64 {
-    let (sum, power) = now(&design.joints[joint]).fold((0.0, 0.0), |(sum, power), cell| {
-        let of_cell = cell.power * cell.rows.len() as f64;
-        (sum + square(cell.range) * of_cell, power + of_cell)
-    });
-    sum / power.max(f64::MIN_POSITIVE)
+    let of = &design.joints[joint];
+    let squares = now(of).map(|cell| square(cell.range) * cell.power * cell.rows.len() as f64);
+    squares.sum::<f64>() / power(of).max(f64::MIN_POSITIVE)
+}
+
+/// Sum of the squares of the model's torque in the logs as they are now.
+fn power(of: &JointDesign) -> f64 {
+    now(of).map(|cell| cell.power * cell.rows.len() as f64).sum()
 }
 
 /// Place of the baseline's sizes behind those of the logs as they are now.

@@ -139,6 +139,21 @@ const MISSED: [f64; 2] = [0.01, 1.0];
 /// than their torques.
 const NONE: f64 = 1e-6;
 
+/// Sizes halfway to the prior medians: neither do they explain all that an effect may explain, nor is
+/// all that they explain an effect.
+#[must_use]
+pub(in crate::gap) fn halfway(sizes: &Sizes) -> Sizes {
+    let mut all = sizes.clone();
+    for joint in &mut all {
+        joint.groups.retain(|(group, _)| !matches!(group, Group::Form(_)));
+        let groups = joint.groups.iter_mut().map(|(_, size)| size);
+        for size in groups.chain(&mut joint.error) {
+            size.value = (size.value * size.median).sqrt();
+        }
+    }
+    all
+}
+
 /// The prior medians of all joints.
 #[must_use]
 pub(in crate::gap) fn usual(design: &Design) -> Sizes {

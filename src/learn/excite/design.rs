@@ -24,7 +24,7 @@ use super::series::{Series, State};
 /// Sampled states for each period of the fastest harmonic.
 const STATES: usize = 10;
 /// Factor of the number of states in the check between the states of the objective.
-const FINER: usize = 4;
+pub(super) const FINER: usize = 4;
 /// Random motions from which the best starts are chosen.
 const TRIED: usize = 300;
 /// Motions that are optimised.
@@ -97,7 +97,7 @@ pub struct Designed {
 }
 
 /// A design problem: the robot, its limits and the base parameters.
-struct Problem<'a> {
+pub(super) struct Problem<'a> {
     model: &'a Model,
     settings: &'a Design,
     base: BaseParameters,
@@ -197,19 +197,19 @@ pub fn random_feasible(model: &Model, settings: &Design, count: usize) -> Result
     best.ok_or(ExciteError::Nowhere)
 }
 
-struct Work<'a> {
+pub(super) struct Work<'a> {
     normal: Normal<'a>,
     body: Body<'a>,
 }
 
 impl<'a> Work<'a> {
-    fn new(problem: &'a Problem<'_>) -> Work<'a> {
+    pub(super) fn new(problem: &'a Problem<'_>) -> Work<'a> {
         Work { normal: Normal::new(problem.model, &problem.base), body: problem.body() }
     }
 }
 
 impl<'a> Problem<'a> {
-    fn new(model: &'a Model, settings: &'a Design) -> Result<Problem<'a>, ExciteError> {
+    pub(super) fn new(model: &'a Model, settings: &'a Design) -> Result<Problem<'a>, ExciteError> {
         let [velocity, acceleration] = rate_limits(model)?;
         let n = model.dof;
         let base = match settings.focus {
@@ -241,15 +241,15 @@ impl<'a> Problem<'a> {
         Ok(Problem { model, settings, base, shares, velocity, acceleration, states })
     }
 
-    fn body(&self) -> Body<'a> {
+    pub(super) fn body(&self) -> Body<'a> {
         Body::new(self.model, self.settings.tool, &self.settings.obstacles)
     }
 
-    fn per_joint(&self) -> usize {
+    pub(super) fn per_joint(&self) -> usize {
         1 + 2 * self.settings.harmonics.len()
     }
 
-    fn random(&self, random: &mut fastrand::Rng) -> DVector<f64> {
+    pub(super) fn random(&self, random: &mut fastrand::Rng) -> DVector<f64> {
         let count = self.per_joint();
         DVector::from_fn(count * self.model.dof, |k, _| {
             let value = 2.0 * random.f64() - 1.0;
@@ -259,7 +259,7 @@ impl<'a> Problem<'a> {
 
     /// The motion of the variables `x`: for each joint the position of its middle, then the sine
     /// and cosine of each harmonic relative to the largest amplitude of that harmonic alone.
-    fn series(&self, x: &DVector<f64>) -> Series {
+    pub(super) fn series(&self, x: &DVector<f64>) -> Series {
         let n = self.model.dof;
         let harmonics = &self.settings.harmonics;
         let count = self.per_joint();
@@ -308,7 +308,7 @@ impl<'a> Problem<'a> {
     }
 
     /// Size of the limit violations of a motion at `finer` times the states of the objective.
-    fn excess(&self, work: &mut Work<'_>, x: &DVector<f64>, finer: usize) -> f64 {
+    pub(super) fn excess(&self, work: &mut Work<'_>, x: &DVector<f64>, finer: usize) -> f64 {
         let states = self.series(x).sampled(finer * self.states);
         let mut checked = check(self.model, &work.body, &self.settings.load, &states);
         checked.to_obstacles -= ROOM;
@@ -324,7 +324,7 @@ impl<'a> Problem<'a> {
     }
 
     /// A motion of the same shape, reduced until it keeps all limits, if possible.
-    fn shrunk(&self, work: &mut Work<'_>, x: DVector<f64>) -> DVector<f64> {
+    pub(super) fn shrunk(&self, work: &mut Work<'_>, x: DVector<f64>) -> DVector<f64> {
         let count = self.per_joint();
         SIZES
             .iter()
@@ -336,7 +336,7 @@ impl<'a> Problem<'a> {
     }
 
     /// The motion, reduced until it keeps all limits at every millisecond.
-    fn repaired(&self, series: &Series) -> Option<Designed> {
+    pub(super) fn repaired(&self, series: &Series) -> Option<Designed> {
         let mut work = Work::new(self);
         let mut series = series.clone();
         let fine = (series.period() / FINE).round() as usize;

@@ -1,5 +1,6 @@
 //! `joulepath blind`: the sealed examination of `diagnose`.
 
+mod calibrate;
 mod cases;
 mod family;
 mod inject;
@@ -7,17 +8,17 @@ mod sensitivity;
 
 use std::fmt::Write as _;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context, bail};
 use clap::{Args, Subcommand, ValueEnum};
-use serde_json::{Value, json};
+use serde_json::json;
 
-use self::cases::{labels, options, read, write_cases};
+use self::cases::{diagnosis_of_case, known_diagnosis, labels, write_cases};
 use self::family::family;
 use super::common::{self, Format};
-use super::{diagnose, output};
+use super::output;
 use crate::examine::blind::{self, Asked, FAMILY, Grades, KEY, Label, SEALS, Settings};
 use crate::examine::worlds::{self, World};
 use crate::tool::report::html::grades_report;
@@ -38,6 +39,7 @@ enum BlindCommand {
     Generate(GenerateArgs),
     Inject(inject::InjectArgs),
     Grade(GradeArgs),
+    Calibrate(calibrate::CalibrateArgs),
     Sensitivity(sensitivity::SensitivityArgs),
 }
 
@@ -122,6 +124,7 @@ pub(super) fn run(args: &BlindArgs) -> anyhow::Result<ExitCode> {
         BlindCommand::Generate(args) => generate(args),
         BlindCommand::Inject(args) => inject::run(args),
         BlindCommand::Grade(args) => grade(args),
+        BlindCommand::Calibrate(args) => calibrate::run(args),
         BlindCommand::Sensitivity(args) => sensitivity::run(args),
     }
 }
@@ -185,9 +188,7 @@ fn grade(args: &GradeArgs) -> anyhow::Result<ExitCode> {
         };
         let path = beside.join(&label.case).join(&name);
         diagnoses.push(if path.exists() {
-            let shown = path.display();
-            serde_json::from_str(&read(&path)?)
-                .with_context(|| format!("'{shown}' is no JSON; write it again with diagnose"))?
+            known_diagnosis(&path)?
         } else {
             diagnosis_of_case(&args.cases.join(&label.case), &name, &without)?
         });
@@ -209,16 +210,6 @@ fn without<'a>(label: &'a Label, left_out: Option<&'a str>) -> Vec<&'a str> {
         Some(id) => vec![id],
         None => Vec::new(),
     }
-}
-
-/// The JSON of `diagnose` for a case without some effects; stored as `name` in the case folder.
-fn diagnosis_of_case(case: &Path, name: &str, without: &[&str]) -> anyhow::Result<Value> {
-    let value = diagnose::diagnose_case(case, &options(case)?, without)
-        .with_context(|| case.display().to_string())?;
-    // A cache for the next grading.
-    let text = format!("{value:#}\n");
-    output::write(&case.join(name), text.as_bytes())?;
-    Ok(value)
 }
 
 fn table(grades: &Grades) -> String {

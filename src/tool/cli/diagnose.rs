@@ -1,19 +1,25 @@
 //! `joulepath diagnose`: which effect separates a model from its robot.
 
+mod args;
 mod channels;
 mod motion;
+mod next;
 mod pictures;
+
+pub(super) use args::DiagnoseArgs;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
 use anyhow::{Context, bail};
-use clap::{Args, ValueEnum};
+use clap::ValueEnum as _;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
 
+use self::args::TrustArg;
 use super::common::{self, Format};
+use super::excite::ExperimentArgs;
 use super::input::{self, Input};
 use super::logs::{
     PreparedLog, RawLog, Reader, filter_alike, held_out, hold_out, read_all, refuse_same,
@@ -30,90 +36,12 @@ use crate::learn::log::{Channel, ColumnMap};
 use crate::tool::report::diagnose as report;
 use crate::tool::report::html::diagnose_report;
 
-/// Find where a model differs from logs of its robot, which effect explains it, and how far the gap
-/// shrinks.
-#[derive(Debug, Args)]
-#[command(
-    after_help = "Example: joulepath diagnose --robot nominal.toml --log run1.csv run2.csv --heldout other.csv --out model.toml"
-)]
-pub(super) struct DiagnoseArgs {
-    /// The nominal model of the robot: a name (joulepath robots list) or a robot file.
-    #[arg(long, value_name = "NAME|FILE")]
-    robot: String,
-
-    /// Logs of the robot as it is now, CSV or Parquet: `t`, `q1…` and `tau1…`, `i1…` or
-    /// `ia1,ib1,ic1…`.
-    #[arg(long, value_name = "FILE", required = true, num_args = 1..)]
-    log: Vec<PathBuf>,
-
-    /// Logs used only for the evaluation; otherwise the last of several logs.
-    #[arg(long, value_name = "FILE", num_args = 1..)]
-    heldout: Vec<PathBuf>,
-
-    /// Logs from when the model was believed true.
-    #[arg(long, value_name = "FILE", num_args = 1..)]
-    baseline: Vec<PathBuf>,
-
-    /// The program that ran while the logs were recorded; their column `cmd` numbers its movements.
-    #[arg(long, value_name = "PATH")]
-    program: Option<PathBuf>,
-
-    /// How much the model's parameters are believed; by default commissioned with a baseline,
-    /// otherwise cad.
-    #[arg(long, value_enum)]
-    trust: Option<TrustArg>,
-
-    /// Effects that may be found, such as payload,stribeck; with a minus before the first, all
-    /// but these.
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
-    effects: Option<String>,
-
-    /// Columns under other names, such as `q1_deg=J1,tau1=Torque_1`.
-    #[arg(long, value_name = "CHANNEL=COLUMN,…", default_value = "", hide_default_value = true)]
-    map: String,
-
-    /// Duration of a repetition, seconds; otherwise it is found.
-    #[arg(long, value_name = "SECONDS")]
-    period: Option<f64>,
-
-    /// Where the improved model goes, Robot TOML.
-    #[arg(long, value_name = "MODEL.toml")]
-    out: Option<PathBuf>,
-
-    /// A page with residuals, shapes of the effects and shares of the gap.
-    #[arg(long, value_name = "FILE.html")]
-    report: Option<PathBuf>,
-
-    /// Print the answers of all gates that lead to the verdict.
-    #[arg(long)]
-    explain: bool,
-
-    /// How the result is written.
-    #[arg(long, value_enum, default_value_t = Format::Text)]
-    format: Format,
-
-    /// No notes on standard error.
-    #[arg(long, short)]
-    quiet: bool,
-}
-
 /// Cut-off frequency of the filter for logged program runs \[Hz\].
 const RUN_CUTOFF_HZ: f64 = 10.0;
 /// Largest number of logs in a part of a case of `blind`.
 const MAX_LOGS: usize = 999;
 /// Redraw interval of the progress bar.
 const TICK: Duration = Duration::from_millis(200);
-
-/// How much parameters are believed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum TrustArg {
-    /// Identified on this robot.
-    Commissioned,
-    /// From drawings.
-    Cad,
-    /// Not at all.
-    Unknown,
-}
 
 pub(super) fn run(args: &DiagnoseArgs) -> anyhow::Result<ExitCode> {
     let (found, basis) = run_diagnosis(args, &Tunables::DEFAULT)?;
@@ -166,6 +94,8 @@ fn of_case(case: &Path, options: &Value) -> DiagnoseArgs {
         period: options.get("period").and_then(Value::as_f64),
         out: None,
         report: None,
+        next: None,
+        experiment: ExperimentArgs::default(),
         explain: false,
         format: Format::Json,
         quiet: true,
@@ -234,11 +164,11 @@ fn run_diagnosis(
         return diagnose_motion(args, &model, &map, raw, &wanted);
     }
     ready(&model, Use::Diagnose)?;
+    next::check(args, &model)?;
     let Data { train, held, baseline, heldout, notes } = read_data(args, &model, &map, raw, trust)?;
     // These notes were already shown during reading.
     let shown = notes.len();
     let mut basis = report::Basis {
-        robot: args.robot.clone(),
         heldout: heldout.to_owned(),
         graded: held.iter().map(|of| of.record.path.clone()).collect(),
         notes,
@@ -279,6 +209,7 @@ fn run_diagnosis(
                 .into(),
         );
     }
+    basis.next = next::experiment(args, &model, &train, &found)?;
     let graded = if held.is_empty() { &train } else { &held };
     write(args, &model, graded, &found, &mut basis)?;
     common::notes(args.quiet, &basis.notes[shown..]);
@@ -318,7 +249,6 @@ fn diagnose_motion(
     let mut found = Diagnosis::without_torques(model);
     channels::add_runs(&mut found, &of_runs, &lines);
     let mut basis = report::Basis {
-        robot: args.robot.clone(),
         heldout: heldout.to_owned(),
         graded,
         notes: reader.notes,

@@ -3,23 +3,24 @@
 mod area;
 mod args;
 mod motion;
+mod next;
 mod outputs;
 
-pub(super) use args::ExciteArgs;
+pub(super) use area::{cell, floor};
+pub(super) use args::{ExciteArgs, ExperimentArgs};
+pub(super) use next::{Written, next_experiment};
 
 use std::process::ExitCode;
 
 use anyhow::bail;
-use nalgebra::Vector3;
 
-use self::area::{MAX_NUMBER, keep_out, plane};
+use self::area::Cell;
 use self::args::{MAX_SPACING, Spacing, Variant};
 use self::motion::{TABLE_STEP, designed_motion, plateau_motion};
-use self::outputs::{json, text, write};
+use self::outputs::{json, text, title, write};
 use super::common;
-use super::load;
 use crate::arm::effects;
-use crate::arm::kinematics::{Body, Obstacle, Plane};
+use crate::arm::kinematics::Body;
 use crate::arm::robot::Model;
 use crate::learn::excite::{Design, Focus, Plateaus, friction_plateaus, wrist_plateaus};
 
@@ -45,7 +46,8 @@ pub(super) fn run(args: &ExciteArgs) -> anyhow::Result<ExitCode> {
         Variant::Wrist => plateaus(wrist_plateaus(&model, &body, args.speed_share)?),
         _ => designed_motion(args, &model, &settings, &body)?,
     };
-    let outputs = write(args, &model, &settings.load, &motion)?;
+    let logged = (title(args.variant), args.cell.torque);
+    let outputs = write(&args.out, logged, &model, &settings.load, &motion)?;
     common::print(args.format, || json(&motion, &outputs), || text(&motion, &outputs))
 }
 
@@ -92,22 +94,7 @@ fn settings(args: &ExciteArgs, model: &Model) -> anyhow::Result<Design> {
             );
         }
     }
-    let planes = args.planes.iter().map(|text| Ok(Obstacle::Plane(plane(text)?)));
-    let boxes = args.boxes.iter().map(|text| Ok(Obstacle::KeepOut(keep_out(text)?)));
-    let mut obstacles: Vec<Obstacle> = planes.chain(boxes).collect::<anyhow::Result<_>>()?;
-    obstacles.extend(floor(model));
-    let tool = match &args.tool {
-        Some(text) => {
-            let [x, y, z] = common::numbers(
-                "--tool",
-                text,
-                MAX_NUMBER,
-                "three lengths in mm, such as 0,0,250",
-            )?;
-            Vector3::new(x, y, z) * 1e-3
-        }
-        None => Vector3::zeros(),
-    };
+    let Cell { obstacles, tool, load } = cell(&args.cell, model)?;
     let (focus, base_frequency, harmonics, speed_share) = match args.variant {
         // A tenth of the speed: little inertia, and friction of constant sign.
         Variant::Gravity => {
@@ -116,7 +103,6 @@ fn settings(args: &ExciteArgs, model: &Model) -> anyhow::Result<Design> {
         Variant::Payload => (Focus::Payload, args.base_frequency, harmonics, args.speed_share),
         _ => (Focus::All, args.base_frequency, harmonics, args.speed_share),
     };
-    let load = load::from_option(args.load.as_deref())?;
     Ok(Design {
         focus,
         base_frequency,
@@ -127,12 +113,4 @@ fn settings(args: &ExciteArgs, model: &Model) -> anyhow::Result<Design> {
         load,
         seed: args.seed,
     })
-}
-
-/// The floor as an obstacle; `None` for a hanging or inclined robot.
-pub(super) fn floor(model: &Model) -> Option<Obstacle> {
-    let base = &model.kinematics.base;
-    let distance = -base.translation.z;
-    let stands = base.rotation.angle() < 1e-6;
-    stands.then_some(Obstacle::Plane(Plane { normal: Vector3::z(), distance }))
 }

@@ -5,13 +5,11 @@ use std::fmt::Write;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use crate::gap::{Budget, Diagnosis, Finding, Interval, Place, Verdict};
+use crate::gap::{Budget, Calibration, Diagnosis, Finding, Interval, Place, Verdict};
 
 /// The basis of a result: robot, logs, notes.
 #[derive(Clone, Debug, Default)]
 pub struct Basis {
-    /// The robot as given by the user.
-    pub robot: String,
     /// The kind of held-out data: `file`, `trajectory` or `cycles`.
     pub heldout: String,
     /// The held-out logs.
@@ -20,12 +18,16 @@ pub struct Basis {
     pub model: String,
     /// Notes for the reader.
     pub notes: Vec<String>,
+    /// The next experiment, if one would tell more.
+    pub next: Option<Experiment>,
 }
 
 /// The JSON of the stable interface.
 #[must_use]
 pub fn json(found: &Diagnosis, basis: &Basis) -> Value {
-    let all = |of: &[Finding]| -> Vec<Value> { of.iter().map(|of| effect(of, found)).collect() };
+    let all = |of: &[Finding], is_asserted: bool| -> Vec<Value> {
+        of.iter().map(|of| effect(of, is_asserted, found)).collect()
+    };
     let generic = found.remainder.iter().map(|of| {
         json!({
             "id": of.id,
@@ -35,12 +37,12 @@ pub fn json(found: &Diagnosis, basis: &Basis) -> Value {
     });
     json!({
         "verdict": found.verdict.name(),
-        "effects": all(&found.effects),
-        "candidates": all(&found.candidates),
+        "effects": all(&found.effects, true),
+        "candidates": all(&found.candidates, false),
         "generic": generic.collect::<Vec<_>>(),
         "where": found.places.iter().map(place).collect::<Vec<_>>(),
         "gap": gap(found, basis),
-        "next_experiment": next(found, basis),
+        "next_experiment": basis.next,
         "budget": found.budget.iter().map(budget).collect::<Vec<_>>(),
         "everyday_error_percent": found.everyday.iter().map(|x| 100.0 * x).collect::<Vec<_>>(),
         "trail": found.trail,
@@ -137,7 +139,8 @@ fn share(of: &Finding, found: &Diagnosis) -> f64 {
     own.map_or(0.0, |(_, rms)| (rms / all.model.max(f64::MIN_POSITIVE)).powi(2))
 }
 
-fn effect(of: &Finding, found: &Diagnosis) -> Value {
+fn effect(of: &Finding, is_asserted: bool, found: &Diagnosis) -> Value {
+    let counted = Calibration::used().count(of.inclusion, is_asserted);
     let parameters = of
         .parameters
         .iter()
@@ -146,39 +149,49 @@ fn effect(of: &Finding, found: &Diagnosis) -> Value {
         "id": of.effect.id,
         "joints": of.joints.iter().map(|joint| joint + 1).collect::<Vec<_>>(),
         "class": of.class,
-        "probability": of.probability,
+        "probability": of.probability(is_asserted),
+        "evidence_probability": of.inclusion,
+        "counted": counted,
         "parameters": parameters.collect::<Map<_, _>>(),
         "share_percent": 100.0 * share(of, found),
         "nats": of.nats,
+        "inspect": of.effect.inspect,
         "size_percent": 100.0 * of.size,
     })
 }
 
-/// The next experiment: reason and command.
-#[derive(Serialize)]
-pub(super) struct Experiment {
-    why: String,
-    command: String,
+/// The next experiment.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Experiment {
+    /// What it tells.
+    pub why: String,
+    /// The command to give afterwards, or the one that writes it.
+    pub command: String,
+    /// Repetitions of the motion; 0 where it is not written.
+    pub cycles: usize,
+    /// What the new log would show.
+    pub outcomes: Vec<Outcome>,
+    /// The written files.
+    pub outputs: Vec<String>,
 }
 
-/// The next experiment, if one would tell more.
-pub(super) fn next(found: &Diagnosis, basis: &Basis) -> Option<Experiment> {
-    let unclear = found.candidates.iter().chain(&found.effects).find(|of| {
-        of.class.len() > 1
-            || found.verdict != Verdict::Effect && !of.effect.experiment[1].is_empty()
-    });
-    unclear.map(|of| {
-        let [options, why] = of.effect.experiment;
-        let robot = quoted(&basis.robot);
-        let command = format!("joulepath excite --robot {robot} --out excitation {options}");
-        let command = command.trim_end().to_owned();
-        Experiment { why: format!("{}: {why}", of.effect.id), command }
-    })
+/// What a further log would show.
+#[derive(Clone, Debug, Serialize)]
+pub struct Outcome {
+    /// What is true.
+    pub truth: String,
+    /// How much more probable than no effect the logs so far make it \[nats\].
+    pub so_far_nats: f64,
+    /// By how much it is told from all others \[nats\].
+    pub nats: f64,
+    /// In words.
+    pub text: String,
 }
 
 /// Quotes a word of a command line.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "/._-+:".contains(c);
+#[must_use]
+pub fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "/._-+:,=".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
         return word.to_owned();
     }
@@ -210,8 +223,18 @@ pub fn called(of: &Finding) -> String {
 }
 
 /// The same with its probability.
-fn with_probability(of: &Finding) -> String {
-    format!("{}, probability {:.2}, {:.0} nats", called(of), of.probability, of.nats)
+fn with_probability(of: &Finding, is_asserted: bool) -> String {
+    let mut text = format!(
+        "{}, probability {:.2}, {:.0} nats",
+        called(of),
+        of.probability(is_asserted),
+        of.nats
+    );
+    let counted = Calibration::used().count(of.inclusion, is_asserted);
+    if let Some(counted) = counted.filter(|counted| counted.of > 0) {
+        let _ = write!(text, " (was there in {} of {} sealed cases)", counted.there, counted.of);
+    }
+    text
 }
 
 /// What the gap depends on beside the effects.
@@ -253,7 +276,7 @@ pub fn text(found: &Diagnosis, basis: &Basis) -> String {
         );
     }
     for of in &found.effects {
-        let _ = writeln!(out, "\nfound: {}", with_probability(of));
+        let _ = writeln!(out, "\nfound: {}", with_probability(of, true));
         if of.class.len() > 1 {
             let _ = writeln!(out, "  cannot be told apart: {}", of.class.join(", "));
         }
@@ -261,12 +284,13 @@ pub fn text(found: &Diagnosis, basis: &Basis) -> String {
             let (name, value, sd) = (&parameter.name, parameter.value, parameter.sd);
             let _ = writeln!(out, "  {name:<20} {value:>12.5} ± {sd:.5} {}", parameter.unit);
         }
+        let _ = writeln!(out, "  inspect {}", of.effect.inspect);
     }
     if !found.candidates.is_empty() {
         out.push('\n');
     }
     for of in &found.candidates {
-        let _ = writeln!(out, "considered: {}", with_probability(of));
+        let _ = writeln!(out, "considered: {}", with_probability(of, false));
     }
     for text in unknown(found) {
         let _ = writeln!(out, "unknown: {text}");
@@ -274,8 +298,11 @@ pub fn text(found: &Diagnosis, basis: &Basis) -> String {
     for reason in &found.reasons {
         let _ = writeln!(out, "not asserted: {reason}");
     }
-    if let Some(Experiment { why, command }) = next(found, basis) {
+    if let Some(Experiment { why, command, outcomes, .. }) = &basis.next {
         let _ = writeln!(out, "next: {why}\n  {command}");
+        for Outcome { truth, text, .. } in outcomes {
+            let _ = writeln!(out, "  if {truth} is true, {text}");
+        }
     }
     if !basis.model.is_empty() {
         let _ = writeln!(out, "model: {}", basis.model);
@@ -298,7 +325,7 @@ pub fn trail(found: &Diagnosis) -> String {
         let (name, gate) = (&of.hypothesis, of.gate.what());
         let _ = writeln!(
             out,
-            "  {answer}  {name:<36} {:>10.4} {sign} {:<8} {gate}",
+            "  {answer}  {name:<36} {:>10.4} {sign} {:<8.4} {gate}",
             of.value, of.limit
         );
     }
@@ -349,20 +376,31 @@ fn everyday(found: &Diagnosis) -> Option<String> {
     })
 }
 
-/// The joint with most of the gap, and where it is most of the time.
+/// The joint with most of the gap, and at which speeds, positions and loads most of that is.
 fn place_text(found: &Diagnosis) -> Option<String> {
     let by_share = |a: &&Place, b: &&Place| a.share.total_cmp(&b.share);
     let whole = found.places.iter().filter(|of| of.regime == "all" && of.joint.is_some());
     let most = whole.max_by(by_share)?;
     let joint = most.joint?;
-    let pieces = found.places.iter().filter(|of| of.joint == Some(joint) && of.regime != "all");
-    let piece = pieces.filter(|of| of.span.is_none()).max_by(by_share);
-    let mut text = format!("joint {}, {:.0} %", joint + 1, 100.0 * most.share);
-    if let Some(piece) = piece.filter(|of| of.share > 0.5 * most.share) {
-        let _ = write!(text, ", mostly at {}", piece.regime);
+    let pieces = || found.places.iter().filter(|of| of.joint == Some(joint) && of.regime != "all");
+    let mut mostly = Vec::new();
+    for quantity in ["speed", "position", "load"] {
+        let of_quantity = || pieces().filter(|of| of.regime.starts_with(quantity));
+        let largest = of_quantity().max_by(by_share);
+        // A third of the time holds more than half of it.
+        if let Some(largest) = largest.filter(|of| of.share > CONCENTRATED * most.share) {
+            mostly.push(largest.regime.as_str());
+        }
+    }
+    let mut text = format!("joint {}, {:.0} % of the gap", joint + 1, 100.0 * most.share);
+    if !mostly.is_empty() {
+        let _ = write!(text, ", mostly at {}", mostly.join(", "));
     }
     Some(text)
 }
+
+/// Share of a joint's gap in a third of its motion from which on the third is told.
+const CONCENTRATED: f64 = 0.5;
 
 /// How far the gap shrinks.
 fn shrink_text(found: &Diagnosis, basis: &Basis) -> String {

@@ -21,6 +21,7 @@ pub(in crate::arm::effects) const ACCELERATION_LIMIT: Effect = Effect {
     joints: |_| vec![0],
     brings: &[],
     confused: &["speed_limit"],
+    inspect: "AccSet, and the loaddata of the tool",
     experiment: ["", "the same program again, logged with `line` or `cmd`"],
     form: Form::Timing(Timing::Acceleration),
 };

@@ -21,6 +21,7 @@ pub(in crate::arm::effects) const PROGRAM_WAIT: Effect = Effect {
     joints: |_| vec![0],
     brings: &[],
     confused: &["acceleration_limit"],
+    inspect: "the signal or the device that the program waits for",
     experiment: ["", "the same program again, logged with `line` or `cmd`"],
     form: Form::Timing(Timing::Wait),
 };

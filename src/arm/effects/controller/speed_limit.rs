@@ -21,6 +21,7 @@ pub(in crate::arm::effects) const SPEED_LIMIT: Effect = Effect {
     joints: |_| vec![0],
     brings: &[],
     confused: &["acceleration_limit"],
+    inspect: "speed override and VelSet",
     experiment: ["", "the same program again, logged with `line` or `cmd`"],
     form: Form::Timing(Timing::Speed),
 };

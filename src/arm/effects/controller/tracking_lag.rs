@@ -21,6 +21,7 @@ pub(in crate::arm::effects) const TRACKING_LAG: Effect = Effect {
     joints: |_| vec![0],
     brings: &[],
     confused: &["zone_blending"],
+    inspect: "the tuning of the servos",
     experiment: ["", "the same program again, logged with `line` or `cmd`"],
     form: Form::Timing(Timing::Lag),
 };

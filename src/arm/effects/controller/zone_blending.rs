@@ -21,6 +21,7 @@ pub(in crate::arm::effects) const ZONE_BLENDING: Effect = Effect {
     joints: |_| vec![0],
     brings: &[],
     confused: &["acceleration_limit"],
+    inspect: "zones and speeds of the program",
     experiment: ["", "the same program again, logged with `line` or `cmd`"],
     form: Form::Timing(Timing::Blending),
 };

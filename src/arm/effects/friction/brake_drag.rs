@@ -35,6 +35,7 @@ pub(in crate::arm::effects) const BRAKE_DRAG: Effect = Effect {
     joints: every,
     brings: &[],
     confused: &["friction_level", "warm_up"],
+    inspect: "the air gap and the voltage of the brake",
     experiment: ["--variant friction", "one joint after the other"],
     form: Form::Law { dissipates: true, torque },
 };

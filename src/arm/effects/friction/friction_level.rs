@@ -28,6 +28,7 @@ pub(in crate::arm::effects) const FRICTION_LEVEL: Effect = Effect {
     joints: every,
     brings: &[],
     confused: &["warm_up", "nonlinear_viscous", "brake_drag"],
+    inspect: "lubricant, seals and bearings of the gear",
     experiment: ["--variant friction", "each joint alone at six speeds both ways"],
     form: Form::Model(change),
 };

@@ -26,6 +26,7 @@ pub(in crate::arm::effects) const GEAR_EFFICIENCY: Effect = Effect {
     joints: every,
     brings: &[],
     confused: &["load_friction", "position_friction"],
+    inspect: "wear and lubricant of the gear",
     experiment: ["--variant gravity", "lifting and lowering"],
     form: Form::Law { dissipates: true, torque },
 };

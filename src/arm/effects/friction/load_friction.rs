@@ -23,6 +23,7 @@ pub(in crate::arm::effects) const LOAD_FRICTION: Effect = Effect {
     joints: every,
     brings: &[],
     confused: &["gear_efficiency", "position_friction"],
+    inspect: "bearings and preload of the gear",
     experiment: ["--variant payload", "the same path with and without a payload"],
     form: Form::Law { dissipates: true, torque },
 };

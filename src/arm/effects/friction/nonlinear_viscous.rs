@@ -30,6 +30,7 @@ pub(in crate::arm::effects) const NONLINEAR_VISCOUS: Effect = Effect {
     joints: every,
     brings: &["friction_level"],
     confused: &["stribeck", "viscous_asymmetry", "flux_weakening"],
+    inspect: "type, age and temperature of the lubricant",
     experiment: ["--variant friction", "six speeds both ways"],
     form: Form::Law { dissipates: true, torque },
 };

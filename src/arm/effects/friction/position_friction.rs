@@ -28,6 +28,7 @@ pub(in crate::arm::effects) const POSITION_FRICTION: Effect = Effect {
     joints: every,
     brings: &[],
     confused: &["load_friction", "gear_efficiency"],
+    inspect: "gear and bearings at the angles with more friction",
     experiment: ["--variant payload", "the same angles with another load"],
     form: Form::Law { dissipates: true, torque },
 };

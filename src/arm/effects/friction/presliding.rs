@@ -28,6 +28,7 @@ pub(in crate::arm::effects) const PRESLIDING: Effect = Effect {
     joints: every,
     brings: &[],
     confused: &["stribeck", "backlash", "time_delay"],
+    inspect: "seals and bearings",
     experiment: ["--variant friction", "reversals at two speeds: a distance is no time"],
     form: Form::Series(added),
 };

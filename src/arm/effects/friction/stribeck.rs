@@ -31,6 +31,7 @@ pub(in crate::arm::effects) const STRIBECK: Effect = Effect {
     joints: every,
     brings: &["friction_level"],
     confused: &["presliding", "nonlinear_viscous", "backlash"],
+    inspect: "the lubricant of the gear",
     experiment: ["--variant friction", "constant speeds, slow ones among them"],
     form: Form::Law { dissipates: true, torque },
 };

@@ -23,6 +23,7 @@ pub(in crate::arm::effects) const VISCOUS_ASYMMETRY: Effect = Effect {
     joints: every,
     brings: &[],
     confused: &["nonlinear_viscous", "torque_offset"],
+    inspect: "teeth and seals that are worn in one direction",
     experiment: ["--variant friction", "six speeds both ways"],
     form: Form::Law { dissipates: true, torque },
 };

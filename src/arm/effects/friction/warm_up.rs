@@ -32,6 +32,7 @@ pub(in crate::arm::effects) const WARM_UP: Effect = Effect {
     joints: every,
     brings: &[],
     confused: &["friction_level"],
+    inspect: "the temperature of the gear before a run",
     experiment: ["--variant warming", "from cold to warm"],
     form: Form::Law { dissipates: true, torque },
 };

@@ -26,6 +26,7 @@ pub(in crate::arm::effects) const APPARENT_TORQUE: Effect = Effect {
     joints: every,
     brings: &[],
     confused: &["time_delay", "filter_lag", "elasticity"],
+    inspect: "how the drive computes the torque that is logged",
     experiment: ["--harmonics 1,4,7,11", "faster motion tells a delay from an inertia"],
     form: Form::Model(change),
 };

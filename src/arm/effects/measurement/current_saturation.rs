@@ -30,6 +30,7 @@ pub(in crate::arm::effects) const CURRENT_SATURATION: Effect = Effect {
     joints: every,
     brings: &[],
     confused: &["torque_constant", "load_friction"],
+    inspect: "motor and amplifier at their largest currents",
     experiment: ["--harmonics 1,4,7,11", "larger torques"],
     form: Form::Series(added),
 };

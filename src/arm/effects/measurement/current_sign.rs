@@ -22,6 +22,7 @@ pub(in crate::arm::effects) const CURRENT_SIGN: Effect = Effect {
     joints: every,
     brings: &[],
     confused: &[],
+    inspect: "the sign of the logged signal",
     experiment: ["--variant gravity", "weights tell the sign"],
     form: Form::Series(added),
 };

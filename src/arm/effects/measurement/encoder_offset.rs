@@ -21,6 +21,7 @@ pub(in crate::arm::effects) const ENCODER_OFFSET: Effect = Effect {
     joints: every,
     brings: &[],
     confused: &["link_parameters", "base_tilt"],
+    inspect: "revolution counter and calibration of the axis",
     experiment: ["--variant gravity", "poses on both sides of the vertical"],
     form: Form::Model(|model, joint, values| model.sensors.position_offset[joint] += values[0]),
 };

@@ -24,12 +24,13 @@ pub(in crate::arm::effects) const FILTER_LAG: Effect = Effect {
     ],
     coordinates: &[
         shape(|_| vec![0.002, 0.004, 0.008, 0.016, 0.032]),
-        Coordinate { role: Role::Choice(|_| vec![0.0]), usual: shaped },
+        Coordinate { role: Role::OnlyJoint, usual: shaped },
     ],
     published: None,
     joints: every,
     brings: &[],
     confused: &["time_delay", "elasticity"],
+    inspect: "the filter of the logged signal",
     experiment: ["--harmonics 1,4,7,11", "a filter also takes amplitude"],
     form: Form::Series(added),
 };

@@ -28,6 +28,7 @@ pub(in crate::arm::effects) const FLUX_WEAKENING: Effect = Effect {
     joints: every,
     brings: &[],
     confused: &["nonlinear_viscous", "torque_constant"],
+    inspect: "supply voltage and top speed of the drive",
     experiment: ["--speed-share 1", "top speed with and without load"],
     form: Form::Series(added),
 };

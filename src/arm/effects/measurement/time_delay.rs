@@ -24,12 +24,13 @@ pub(in crate::arm::effects) const TIME_DELAY: Effect = Effect {
     ],
     coordinates: &[
         shape(|_| vec![-0.016, -0.008, -0.004, -0.002, 0.002, 0.004, 0.008, 0.016]),
-        Coordinate { role: Role::Choice(|_| vec![0.0]), usual: shaped },
+        Coordinate { role: Role::OnlyJoint, usual: shaped },
     ],
     published: None,
     joints: every,
     brings: &[],
     confused: &["filter_lag", "presliding", "backlash"],
+    inspect: "the clocks of the logged signals",
     experiment: ["--harmonics 1,4,7,11", "a delay grows with the frequency"],
     form: Form::Series(added),
 };

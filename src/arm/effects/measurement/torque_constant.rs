@@ -21,6 +21,7 @@ pub(in crate::arm::effects) const TORQUE_CONSTANT: Effect = Effect {
     joints: every,
     brings: &[],
     confused: &["link_parameters", "current_saturation"],
+    inspect: "temperature of the motor and scale of its current sensor",
     experiment: ["--variant payload", "with and without a known payload"],
     form: Form::Model(|model, joint, values| model.sensors.torque_error[joint] += values[0]),
 };

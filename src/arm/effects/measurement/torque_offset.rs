@@ -9,7 +9,7 @@ pub(in crate::arm::effects) const TORQUE_OFFSET: Effect = Effect {
     channel: Channel::Torque,
     scope: Scope::Joint,
     subject: Subject::Measurement,
-    nature: Nature::Law,
+    nature: Nature::Parameter,
     acts: Acts::Always,
     variable: None,
     title: "Offset of the torque",
@@ -21,6 +21,7 @@ pub(in crate::arm::effects) const TORQUE_OFFSET: Effect = Effect {
     joints: every,
     brings: &[],
     confused: &["cable", "gravity_spring", "base_tilt"],
+    inspect: "the zero of the current sensor",
     experiment: ["--variant gravity", "each pose from both sides, slowly"],
     form: Form::Model(|model, joint, values| model.sensors.torque_offset[joint] += values[0]),
 };

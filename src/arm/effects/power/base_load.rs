@@ -19,6 +19,7 @@ pub(in crate::arm::effects) const BASE_LOAD: Effect = Effect {
     joints: |_| vec![0],
     brings: &[],
     confused: &["brake_power"],
+    inspect: "what hangs on the supply of the controller",
     experiment: ["", "the same program again, logged with its power"],
     form: Form::Model(|model, _, values| model.drive.base_w += values[0]),
 };

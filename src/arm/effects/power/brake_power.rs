@@ -21,6 +21,7 @@ pub(in crate::arm::effects) const BRAKE_POWER: Effect = Effect {
     joints: |_| vec![0],
     brings: &[],
     confused: &["base_load"],
+    inspect: "coils of the brakes, and the brake timeout",
     experiment: ["", "a log with a long wait"],
     form: Form::Model(change),
 };

@@ -23,6 +23,7 @@ pub(in crate::arm::effects) const COPPER_LOSS: Effect = Effect {
     joints: every,
     brings: &[],
     confused: &["inverter_loss"],
+    inspect: "resistance and temperature of the windings",
     experiment: ["", "the same program again, logged with its power"],
     form: Form::Model(change),
 };

@@ -19,6 +19,7 @@ pub(in crate::arm::effects) const INVERTER_LOSS: Effect = Effect {
     joints: |_| vec![0],
     brings: &[],
     confused: &["copper_loss", "base_load"],
+    inspect: "drive unit and motor cables",
     experiment: ["", "the same program again, logged with its power"],
     form: Form::Elsewhere,
 };

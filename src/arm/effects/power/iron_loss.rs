@@ -21,6 +21,7 @@ pub(in crate::arm::effects) const IRON_LOSS: Effect = Effect {
     joints: every,
     brings: &[],
     confused: &["friction_level"],
+    inspect: "temperature of the motor at high speed",
     experiment: ["", "the same program again, logged with its power"],
     form: Form::Elsewhere,
 };

@@ -19,6 +19,7 @@ pub(in crate::arm::effects) const NO_REGENERATION: Effect = Effect {
     joints: |_| vec![0],
     brings: &[],
     confused: &["copper_loss"],
+    inspect: "braking resistor and link of the drives",
     experiment: ["", "the same program again, logged with its power"],
     form: Form::Model(|model, _, _| model.drive.regeneration = 0.0),
 };

@@ -29,6 +29,7 @@ pub(in crate::arm::effects) const BASE_TILT: Effect = Effect {
     joints: |_| vec![0],
     brings: &[],
     confused: &["torque_offset", "encoder_offset"],
+    inspect: "the mounting of the base, with a level",
     experiment: ["--variant gravity", "axis 1 swept with the arm out"],
     form: Form::Model(change),
 };

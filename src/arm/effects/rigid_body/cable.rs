@@ -25,6 +25,7 @@ pub(in crate::arm::effects) const CABLE: Effect = Effect {
     joints: |dof| (0..dof).filter(|joint| !(1..3).contains(joint)).collect(),
     brings: &["torque_offset"],
     confused: &["torque_offset", "base_tilt"],
+    inspect: "dress pack and hoses at the joint",
     experiment: ["--variant gravity", "the whole range of the joint, slowly"],
     form: Form::Law { dissipates: false, torque: spring },
 };

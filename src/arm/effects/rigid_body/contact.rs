@@ -50,6 +50,7 @@ pub(in crate::arm::effects) const CONTACT: Effect = Effect {
     joints: |_| vec![0],
     brings: &[],
     confused: &["brake_drag"],
+    inspect: "what the arm touches at these times",
     experiment: ["", "a dry run"],
     form: Form::Series(added),
 };

@@ -25,6 +25,7 @@ pub(in crate::arm::effects) const GRAVITY_SPRING: Effect = Effect {
     joints: |dof| (1..dof.min(3)).collect(),
     brings: &["torque_offset"],
     confused: &["cable", "link_parameters"],
+    inspect: "pressure of the balancer, or its spring",
     experiment: ["--variant gravity", "the whole range of the joint, slowly"],
     form: Form::Law { dissipates: false, torque: spring },
 };

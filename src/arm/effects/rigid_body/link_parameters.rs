@@ -49,6 +49,7 @@ pub(in crate::arm::effects) const LINK_PARAMETERS: Effect = Effect {
     joints: every,
     brings: &[],
     confused: &["payload", "gravity_spring"],
+    inspect: "what is mounted on the link",
     experiment: ["", "identify the robot"],
     form: Form::Model(change),
 };

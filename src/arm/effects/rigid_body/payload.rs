@@ -46,6 +46,7 @@ pub(in crate::arm::effects) const PAYLOAD: Effect = Effect {
     joints: |dof| vec![dof - 1],
     brings: &[],
     confused: &["link_parameters", "torque_constant"],
+    inspect: "what the flange carries, and its loaddata",
     experiment: ["--variant payload", "with and without it"],
     form: Form::Model(change),
 };

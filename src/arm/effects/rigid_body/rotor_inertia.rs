@@ -25,6 +25,7 @@ pub(in crate::arm::effects) const ROTOR_INERTIA: Effect = Effect {
     joints: every,
     brings: &[],
     confused: &["elasticity", "filter_lag", "link_parameters"],
+    inspect: "type of the motor and gear ratio",
     experiment: ["--harmonics 1,4,7,11", "faster motion"],
     form: Form::Model(change),
 };

@@ -42,6 +42,7 @@ pub(in crate::arm::effects) const BACKLASH: Effect = Effect {
     joints: every,
     brings: &[],
     confused: &["presliding", "stribeck", "time_delay"],
+    inspect: "the play of the gear, with the brake closed",
     experiment: ["--variant gravity", "reversals with and without load on the gear"],
     form: Form::Series(added),
 };
@@ -103,9 +104,10 @@ fn crossed(motion: &Motion<'_>, joint: usize, gap: f64) -> Vec<(usize, Vec<f64>)
 
 /// Damping ratio of a gear in contact.
 const DAMPING: f64 = 0.4;
-/// Largest product of eigenfrequency and integration step; largest number of steps per row.
+/// Largest product of eigenfrequency and integration step; largest number of steps per row: twice the
+/// highest frequency of the rows is followed.
 const FINEST: f64 = 0.3;
-const MOST_STEPS: f64 = 100.0;
+const MOST_STEPS: f64 = 20.0;
 
 /// A gear with a gap and elastic sides.
 struct Gear {

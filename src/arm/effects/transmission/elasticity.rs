@@ -22,6 +22,7 @@ pub(in crate::arm::effects) const ELASTICITY: Effect = Effect {
     joints: every,
     brings: &[],
     confused: &["rotor_inertia", "filter_lag", "encoder_offset"],
+    inspect: "gear, bearings and couplings that are loose",
     experiment: ["--harmonics 1,4,7,11", "short, hard moves"],
     form: Form::Series(added),
 };

@@ -23,28 +23,28 @@ pub(in crate::arm::effects) const RIPPLE: Effect = Effect {
     parameters: &[
         bounded("amplitude", "Nm", "amplitude", [0.0, f64::INFINITY]),
         free("phase", "rad", "phase at the angle 0"),
-        bounded("order", "1", "waves per turn of the joint", [2.0, 5000.0]),
+        bounded("order", "1", "waves per turn of the joint", ORDERS),
     ],
     coordinates: &[
         linear(|of| 0.1 * of.coulomb),
         linear(|of| 0.1 * of.coulomb),
-        Coordinate { role: Role::Choice(orders), usual: shaped },
+        Coordinate { role: Role::Waves { least: ORDERS[0], most: sampled }, usual: shaped },
     ],
     published: Some(AMPLITUDE_AND_PHASE),
     joints: every,
     brings: &[],
     confused: &["torque_offset", "position_friction"],
+    inspect: "teeth of the gear, and the mounting of the encoder",
     experiment: ["--speed-share 0.1", "slowly, so that the waves are sampled"],
     form: Form::Law { dissipates: false, torque },
 };
 
-/// Typical orders per motor turn of gears and motors.
-const OF_MOTOR: [f64; 4] = [1.0, 2.0, 4.0, 6.0];
+/// Orders of gears and motors.
+const ORDERS: [f64; 2] = [5.0, 5000.0];
 
-/// Typical orders of gears and motors that the sampling can resolve.
-fn orders(of: &Scale) -> Vec<f64> {
-    let most = std::f64::consts::PI / (of.rate * of.step).max(1e-9);
-    OF_MOTOR.map(|k| k * of.ratio).into_iter().filter(|order| (2.0..most).contains(order)).collect()
+/// The highest order that the sampling resolves.
+fn sampled(of: &Scale) -> f64 {
+    (std::f64::consts::PI / (of.rate * of.step).max(1e-9)).min(ORDERS[1])
 }
 
 fn torque(state: &LawState, [cosine, sine, order, ..]: &Values) -> f64 {

@@ -36,7 +36,15 @@ pub(in crate::arm::effects) const WRIST_COUPLING: Effect = Effect {
     published: None,
     joints: |dof| if dof == 6 { vec![5] } else { Vec::new() },
     brings: &["friction_level", "torque_offset"],
-    confused: &["friction_level", "rotor_inertia"],
+    confused: &[
+        "friction_level",
+        "rotor_inertia",
+        "load_friction",
+        "stribeck",
+        "nonlinear_viscous",
+        "brake_drag",
+    ],
+    inspect: "bearings between the shafts of axes 5 and 6",
     experiment: ["--variant wrist", "axis 5 alone, 5 and 6 against each other"],
     form: Form::Model(change),
 };

@@ -75,6 +75,8 @@ pub(super) struct NamedEffect {
     #[serde(default)]
     pub(super) probability: Option<f64>,
     #[serde(default)]
+    pub(super) evidence_probability: Option<f64>,
+    #[serde(default)]
     parameters: Map<String, Value>,
 }
 

@@ -14,6 +14,7 @@ use diagnosis::Diagnosis;
 use score::{Score, score};
 
 pub use diagnosis::DiagnosisError;
+pub use score::Stated;
 
 /// Value of `left_out`: for each case with one torque effect, the library lacks that effect and all
 /// similar ones.
@@ -154,6 +155,14 @@ pub fn grade(
         shrink_of_oracle: median(single(&scores).filter_map(|score| score.of_oracle).collect()),
         wrong,
     })
+}
+
+/// What a diagnosis says of each effect that it asserts or considers, and whether it is there.
+///
+/// # Errors
+/// The diagnosis has an unexpected shape.
+pub fn stated(label: &Label, diagnosis: &Value) -> Result<Vec<Stated>, DiagnosisError> {
+    Ok(score::stated(label, &Diagnosis::read(&label.case, diagnosis)?))
 }
 
 /// Whether a case has this effect alone; [`FAMILY`] accepts any torque effect.

@@ -14,6 +14,17 @@ const CLEAR_SHARE: f64 = 0.5;
 /// Largest accepted error of a parameter in standard deviations.
 const PARAMETER_SD: f64 = 3.0;
 
+/// What is said of an effect, and whether it is there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stated {
+    /// Whether it is asserted; else it is only considered.
+    pub is_asserted: bool,
+    /// Its probability by the evidence alone.
+    pub evidence: f64,
+    /// Whether it is there.
+    pub is_there: bool,
+}
+
 /// Outcome of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Outcome {
@@ -53,7 +64,7 @@ pub(super) struct Score {
     pub(super) place: Option<bool>,
     pub(super) line: Option<bool>,
     pub(super) parameters: Vec<bool>,
-    /// Probability of each candidate effect, and whether it is present.
+    /// Probability of each named effect, and whether it is present.
     pub(super) probabilities: Vec<(f64, bool)>,
     /// Claimed reduction over that of an oracle with the model error only.
     pub(super) of_oracle: Option<f64>,
@@ -76,12 +87,33 @@ impl Score {
     }
 }
 
-/// Scores a case.
-pub(super) fn score(label: &Label, diagnosis: &Diagnosis) -> Score {
-    let truths: Vec<&Truth> = match label.kind {
+/// The effects that are to be found.
+fn truths(label: &Label) -> Vec<&Truth> {
+    match label.kind {
         Kind::One | Kind::Two | Kind::Power | Kind::Motion => label.effects.iter().collect(),
         Kind::Healthy | Kind::ParametersOnly | Kind::Outside => Vec::new(),
+    }
+}
+
+/// What a diagnosis says of each effect that it asserts or considers.
+pub(super) fn stated(label: &Label, diagnosis: &Diagnosis) -> Vec<Stated> {
+    let truths = truths(label);
+    let list = |all: &[NamedEffect], is_asserted: bool| -> Vec<Stated> {
+        let known = all.iter().filter(|said| said.id != "link_parameters");
+        let one = |said: &NamedEffect| {
+            let is_there = truths.iter().any(|truth| accepts(truth, said));
+            Some(Stated { is_asserted, evidence: said.evidence_probability?, is_there })
+        };
+        known.filter_map(one).collect()
     };
+    let mut both = list(&diagnosis.effects, true);
+    both.extend(list(&diagnosis.candidates, false));
+    both
+}
+
+/// Scores a case.
+pub(super) fn score(label: &Label, diagnosis: &Diagnosis) -> Score {
+    let truths = truths(label);
     let named: Vec<&NamedEffect> = diagnosis.named().collect();
     let found = |truth: &Truth| named.iter().copied().find(|said| accepts(truth, said));
     let wrong = named.iter().any(|said| !truths.iter().any(|truth| accepts(truth, said)));
@@ -118,9 +150,8 @@ pub(super) fn score(label: &Label, diagnosis: &Diagnosis) -> Score {
         .filter(|(truth, said)| truth.nats >= DETECTABLE_NATS && said.id == truth.id)
         .flat_map(|(truth, said)| within(truth, said))
         .collect();
-    let considered = diagnosis.effects.iter().chain(&diagnosis.candidates);
-    let probabilities = considered
-        .filter(|said| said.id != "link_parameters")
+    let probabilities = named
+        .iter()
         .filter_map(|said| {
             let there = truths.iter().any(|truth| accepts(truth, said));
             Some((said.probability?, there))

@@ -8,7 +8,7 @@ use anyhow::{Context, bail};
 use rayon::prelude::*;
 use serde_json::Value;
 
-use super::super::{common, output};
+use super::super::{common, diagnose, output};
 use crate::examine::blind::{Case, KEY, Label, SEALS, Sealed, open, seal};
 
 /// Writes the cases with the numbers 1 to `count` and their seals.
@@ -69,4 +69,25 @@ pub(super) fn read(path: &Path) -> anyhow::Result<String> {
     fs::read_to_string(path).with_context(|| {
         format!("cannot read '{shown}'; name the folder that joulepath blind generate wrote")
     })
+}
+
+/// A diagnosis that was written.
+pub(super) fn known_diagnosis(path: &Path) -> anyhow::Result<Value> {
+    let shown = path.display();
+    serde_json::from_str(&read(path)?)
+        .with_context(|| format!("'{shown}' is no JSON; write it again with diagnose"))
+}
+
+/// The JSON of `diagnose` for a case without some effects; stored as `name` in the case folder.
+pub(super) fn diagnosis_of_case(
+    case: &Path,
+    name: &str,
+    without: &[&str],
+) -> anyhow::Result<Value> {
+    let value = diagnose::diagnose_case(case, &options(case)?, without)
+        .with_context(|| case.display().to_string())?;
+    // A cache for the next grading.
+    let text = format!("{value:#}\n");
+    output::write(&case.join(name), text.as_bytes())?;
+    Ok(value)
 }

@@ -43,13 +43,8 @@ pub(in crate::tool::cli) struct ExciteArgs {
     #[arg(long, allow_negative_numbers = true, value_name = "N", default_value_t = 7)]
     pub(super) cycles: usize,
 
-    /// Keep arm and tool where n·x ≥ d: a normal and a distance in m, base frame; repeatable.
-    #[arg(long = "plane", value_name = "NX,NY,NZ,D", allow_hyphen_values = true)]
-    pub(super) planes: Vec<String>,
-
-    /// Keep arm and tool out of the box between two corners, m, base frame; repeatable.
-    #[arg(long = "box", value_name = "X,Y,Z,X,Y,Z", allow_hyphen_values = true)]
-    pub(super) boxes: Vec<String>,
+    #[command(flatten)]
+    pub(super) cell: ExperimentArgs,
 
     /// Share of the joints' speed limits that is used.
     #[arg(long, allow_negative_numbers = true, value_name = "SHARE", default_value_t = 0.8)]
@@ -59,18 +54,6 @@ pub(in crate::tool::cli) struct ExciteArgs {
     /// path within 1 mrad.
     #[arg(long, allow_negative_numbers = true, value_name = "SECONDS", default_value = "0.01")]
     pub(super) spacing: Spacing,
-
-    /// Where the logger reads torques from.
-    #[arg(long, value_enum, default_value_t = TorqueArg::TestSignal)]
-    pub(super) torque: TorqueArg,
-
-    /// The tool centre point in tool0, mm.
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
-    pub(super) tool: Option<String>,
-
-    /// What the flange carries: KG, KG,X,Y,Z (mm) or a loaddata of RAPID.
-    #[arg(long, value_name = "LOAD", allow_hyphen_values = true)]
-    pub(super) load: Option<String>,
 
     /// Another seed starts the search elsewhere.
     #[arg(long, allow_negative_numbers = true, value_name = "N", default_value_t = 1)]
@@ -83,6 +66,30 @@ pub(in crate::tool::cli) struct ExciteArgs {
     /// No notes and no progress on standard error.
     #[arg(long, short)]
     pub(super) quiet: bool,
+}
+
+/// The cell in which a motion runs, and how it is logged.
+#[derive(Clone, Debug, Default, PartialEq, Args)]
+pub(in crate::tool::cli) struct ExperimentArgs {
+    /// Keep arm and tool where n·x ≥ d: a normal and a distance in m, base frame; repeatable.
+    #[arg(long = "plane", value_name = "NX,NY,NZ,D", allow_hyphen_values = true)]
+    pub(in crate::tool::cli) planes: Vec<String>,
+
+    /// Keep arm and tool out of the box between two corners, m, base frame; repeatable.
+    #[arg(long = "box", value_name = "X,Y,Z,X,Y,Z", allow_hyphen_values = true)]
+    pub(in crate::tool::cli) boxes: Vec<String>,
+
+    /// The tool centre point in tool0, mm.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    pub(in crate::tool::cli) tool: Option<String>,
+
+    /// What the flange carries: KG, KG,X,Y,Z (mm) or a loaddata of RAPID.
+    #[arg(long, value_name = "LOAD", allow_hyphen_values = true)]
+    pub(in crate::tool::cli) load: Option<String>,
+
+    /// Where the logger reads torques from.
+    #[arg(long, value_enum, default_value_t = TorqueArg::TestSignal)]
+    pub(in crate::tool::cli) torque: TorqueArg,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -125,8 +132,9 @@ impl Spacing {
 }
 
 /// Where the logger has torques from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum TorqueArg {
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(in crate::tool::cli) enum TorqueArg {
+    #[default]
     /// Test signal 4002, arm side.
     TestSignal,
     /// `GetMotorTorque`, for controllers without test signals; needs the robot's gear ratios.

@@ -6,7 +6,7 @@ use super::args::{ExciteArgs, Spacing, Variant};
 use crate::arm::kinematics::Body;
 use crate::arm::robot::Model;
 use crate::learn::excite::{
-    Blend, Checked, Design, Information, Plateaus, Series, State, blends, check, design,
+    Blend, Checked, Design, Designed, Information, Plateaus, Series, State, blends, check, design,
 };
 use crate::tool::cli::common::progress;
 
@@ -46,6 +46,31 @@ pub(super) fn designed_motion(
         bar.set_position(done as u64);
     })?;
     bar.finish_and_clear();
+    let cycles = if args.variant == Variant::Warming {
+        WARMING_CYCLES.max(args.cycles)
+    } else {
+        args.cycles
+    };
+    // A slow motion needs no more points.
+    let stretched = args.base_frequency / settings.base_frequency;
+    blended(model, settings, body, &found, &|states| {
+        let spacing = args.spacing.seconds(states);
+        match args.spacing {
+            Spacing::Seconds(_) => (stretched * spacing, cycles),
+            Spacing::Adaptive => (spacing, cycles),
+        }
+    })
+}
+
+/// A designed motion with its ways from rest and back; `run` tells the time between points \[s\] and
+/// the number of repetitions for the states of a repetition.
+pub(super) fn blended(
+    model: &Model,
+    settings: &Design,
+    body: &Body<'_>,
+    found: &Designed,
+    run: &dyn Fn(&[State]) -> (f64, usize),
+) -> anyhow::Result<Motion> {
     let fits = |states: &[State]| {
         let checked = check(model, body, &settings.load, states);
         let r = &checked.ratios;
@@ -58,17 +83,9 @@ pub(super) fn designed_motion(
         bail!("no blend from rest into the motion keeps the limits: give another --seed");
     };
     let states = sampled(&series);
-    // A period has a whole number of points; a slow motion needs no more points.
-    let spacing = match args.spacing {
-        Spacing::Seconds(_) => args.base_frequency / settings.base_frequency,
-        Spacing::Adaptive => 1.0,
-    } * args.spacing.seconds(&states);
+    let (spacing, cycles) = run(&states);
+    // A period has a whole number of points.
     let points = points_per_period(series.period(), spacing);
-    let cycles = if args.variant == Variant::Warming {
-        WARMING_CYCLES.max(args.cycles)
-    } else {
-        args.cycles
-    };
     Ok(Motion {
         period: series.period(),
         cycles,

@@ -1,11 +1,12 @@
 //! Writes the output of `joulepath excite`: modules, table and result.
 
 use std::fmt::Write as _;
+use std::path::Path;
 
 use anyhow::bail;
 use serde_json::{Value, json};
 
-use super::args::{ExciteArgs, TorqueArg, Variant};
+use super::args::{TorqueArg, Variant};
 use super::motion::Motion;
 use crate::arm::dynamics::{Data, Load, torque};
 use crate::arm::robot::Model;
@@ -18,7 +19,8 @@ const MARK_SHARE: f64 = 0.02;
 
 /// Writes the modules and the table; returns their paths.
 pub(super) fn write(
-    args: &ExciteArgs,
+    out: &Path,
+    (title, torques): (&str, TorqueArg),
     model: &Model,
     load: &Load,
     motion: &Motion,
@@ -29,7 +31,7 @@ pub(super) fn write(
     let (mut start, mut stop) = (motion.points.first().map(six), motion.points.last().map(six));
     let spacing = motion.period / motion.points.len().max(1) as f64;
     let into = motion.blends.as_ref().map(|[into, _]| into.sampled(spacing));
-    let out = motion.blends.as_ref().map(|[_, out]| out.sampled(spacing));
+    let back = motion.blends.as_ref().map(|[_, back]| back.sampled(spacing));
     if let Some(into) = &into {
         start = into.first().map(six);
         let points = positions(into.get(1..).unwrap_or_default());
@@ -42,9 +44,9 @@ pub(super) fn write(
     }
     let repeated = motion.cycles > 1;
     lists.push(Points { what: "One repetition", name: "Q", repeated, points: positions(&period) });
-    if let Some(out) = &out {
-        stop = out.last().map(six);
-        let points = positions(out.get(1..out.len().saturating_sub(1)).unwrap_or_default());
+    if let Some(back) = &back {
+        stop = back.last().map(six);
+        let points = positions(back.get(1..back.len().saturating_sub(1)).unwrap_or_default());
         lists.push(Points { what: "To rest", name: "Out", repeated: false, points });
     }
     let first: Vec<f64> = motion.states.iter().map(|state| state[0][0]).collect();
@@ -52,7 +54,7 @@ pub(super) fn write(
     let high = first.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let (middle, range) = (0.5 * (low + high), high - low);
     let [motion_module, logger] = excitation(&Excitation {
-        title: title(args.variant).to_owned(),
+        title: title.to_owned(),
         robot: model.name.clone(),
         cycles: motion.cycles,
         period: motion.period,
@@ -61,12 +63,12 @@ pub(super) fn write(
         lists,
         stop: stop.unwrap_or_default(),
         marks: [middle - MARK_SHARE * range, middle + MARK_SHARE * range],
-        torques: logged_torques(args.torque, model)?,
+        torques: logged_torques(torques, model)?,
     })?;
     let mut outputs = Vec::new();
     let table = table(model, load, motion);
     for (name, text) in [motion_module, logger, ("excitation.csv".to_owned(), table)] {
-        let path = args.out.join(name);
+        let path = out.join(name);
         output::write(&path, text.as_bytes())?;
         outputs.push(path.display().to_string());
     }
@@ -86,7 +88,7 @@ fn logged_torques(from: TorqueArg, model: &Model) -> anyhow::Result<LoggedTorque
     Ok(LoggedTorques::Motors { ratio: motors.ratio.clone(), coupling: model.wrist.coupling })
 }
 
-fn title(variant: Variant) -> &'static str {
+pub(super) fn title(variant: Variant) -> &'static str {
     match variant {
         Variant::Full => "Excitation of all parameters",
         Variant::Gravity => "Slow excitation of the weights",

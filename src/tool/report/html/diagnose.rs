@@ -9,7 +9,7 @@ use super::page::{ReportError, render};
 use crate::gap::{
     Attribution, Diagnosis, Estimated, Finding, Interval, Place, Profile, Quantity, Shape, Trace,
 };
-use crate::tool::report::diagnose::{Basis, next, sentence, unknown};
+use crate::tool::report::diagnose::{Basis, sentence, unknown};
 use crate::tool::report::svg::{Curve, Plot, Size};
 
 /// Size of the plots, px.
@@ -78,7 +78,7 @@ pub fn diagnose_report(
     context.insert("effects", &asserted.chain(considered).collect::<Vec<_>>());
     context.insert("unknown", &unknown(found).collect::<Vec<_>>());
     context.insert("reasons", &found.reasons);
-    context.insert("next", &next(found, basis));
+    context.insert("next", &basis.next);
     context.insert("gap", &gap(found));
     context.insert("places", &places);
     context.insert("players", &pictures.attribution.players);
@@ -135,7 +135,7 @@ fn effect(of: &Finding, asserted: bool) -> Value {
             1 => format!("joint {}", joints[0]),
             _ => format!("joints {}", joints.join(", ")),
         },
-        "probability": fixed(of.probability, 2),
+        "probability": fixed(of.probability(asserted), 2),
         "parameters": parameters.collect::<Vec<_>>(),
         "others": others.join(", "),
     })

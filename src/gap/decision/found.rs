@@ -1,0 +1,61 @@
+//! Sets of effects that a search looks at.
+
+use crate::arm::effects::Effect;
+use crate::gap::design::PieceRows;
+use crate::gap::posterior::Fit;
+
+/// Pieces of one effect.
+#[derive(Clone)]
+pub(in crate::gap) struct Candidate {
+    /// The effect.
+    pub effect: &'static Effect,
+    /// Its pieces.
+    pub pieces: Vec<PieceRows>,
+    /// Prior cost \[nats\].
+    pub cost: f64,
+    /// Whether it is no larger than what any robot has, or other values of parameters: it takes no
+    /// place of a finding.
+    pub is_everyday: bool,
+}
+
+/// A set of effects.
+#[derive(Clone)]
+pub(in crate::gap) struct Found {
+    /// The effects.
+    pub effects: Vec<Candidate>,
+    /// The fit with them.
+    pub fit: Fit,
+    /// Logarithm of the odds against no effect.
+    pub score: f64,
+}
+
+impl Found {
+    /// Number of effects that are findings.
+    pub(super) fn places(&self) -> usize {
+        self.effects.iter().filter(|of| !of.is_everyday).count()
+    }
+
+    pub(super) fn tried(&self) -> Tried {
+        Tried { ids: self.effects.iter().map(|of| of.effect.id).collect(), score: self.score }
+    }
+}
+
+/// A set that was fitted: ids of its effects, and the logarithm of the odds against no effect.
+pub(in crate::gap) struct Tried {
+    /// Ids.
+    pub ids: Vec<&'static str>,
+    /// Odds \[nats\].
+    pub score: f64,
+}
+
+/// What a search found.
+pub(in crate::gap) struct Searched {
+    /// The fit without effects.
+    pub none: Found,
+    /// The best set.
+    pub best: Found,
+    /// All sets that were fitted.
+    pub tried: Vec<Tried>,
+    /// The best ones of each size.
+    pub near: Vec<Found>,
+}
