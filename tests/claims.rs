@@ -124,7 +124,7 @@ fn claims_hold_for_a_payload() {
 
 #[test]
 fn claims_hold_for_stiction() {
-    check_case(15, 45, "stribeck");
+    check_case(23, 19, "stribeck");
 }
 
 #[test]
