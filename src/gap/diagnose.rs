@@ -3,7 +3,7 @@
 use super::data::{Record, RecordKind};
 use super::decision::{
     Candidate, Decision, Finding, Found, Gate, Search, Searched, Tried, Verdict, decide,
-    may_name_parameters,
+    may_name_parameters, polished,
 };
 use super::design::{Design, PieceRows};
 use super::diagnosis::Diagnosis;
@@ -52,7 +52,7 @@ pub struct Logs<'a> {
     pub before: &'a [&'a Samples],
 }
 
-/// Diagnoses what has changed since the baseline, or, without one, all that the model has not;
+/// Diagnoses what has changed since the baseline, or, without one, all that the model does not have;
 /// `tell` is called with each phase that begins.
 #[must_use]
 pub fn diagnose_logs(
@@ -138,7 +138,8 @@ fn diagnose_telling(
     effects.retain(|effect| !effect.coordinates.is_empty());
     let search = Search::new(&train, &design, &effects);
     let Some(none) = Search::none_of(&design) else { return Diagnosis::failed(model, held) };
-    let Searched { none, best: found, tried, near } = search.best(none);
+    let Searched { none, best, tried, near } = search.best(none);
+    let found = polished(&search, &none, best);
     tell(Phase::Decision);
     let plain = refitted(believed, (&design, &train));
     let refit = turned.as_ref().map_or_else(|| plain.clone(), |of| of.added_to(&plain));
@@ -312,10 +313,13 @@ impl Models<'_> {
 fn left_at_most(effect: &Effect, tunables: &Tunables) -> f64 {
     match (effect.nature, effect.acts) {
         (Nature::Law, Acts::Always | Acts::AfterReversals) => tunables.left_in_heldout,
-        // Robots warm up differently each day; the refitted model has the parameters, too.
-        (Nature::Law, Acts::OverTime) | (Nature::Parameter | Nature::Parameters, _) => 1.0,
-        // A window that does not come again leaves other logs as they are.
-        (Nature::Law, Acts::InWindow) => 1.0 + NO_WORSE,
+        // Robots warm up differently each day.
+        (Nature::Law, Acts::OverTime) => 1.0,
+        // A window that does not come again leaves other logs as they are; the refitted model has the
+        // parameters, too.
+        (Nature::Law, Acts::InWindow) | (Nature::Parameter | Nature::Parameters, _) => {
+            1.0 + NO_WORSE
+        }
     }
 }
 

@@ -4,12 +4,14 @@ use rayon::prelude::*;
 
 use super::finding::{Estimated, Finding, Remainder, Verdict};
 use super::found::{Candidate, Found, Tried};
+use super::held::{Held, held};
 use super::search::{BEYOND, Search};
 use super::trail::{Entry, Gate};
 use crate::arm::effects::{Acts, Effect, Nature, Scope};
 use crate::gap::data::{Record, RecordKind};
 use crate::gap::design::Set;
 use crate::gap::model::Fitted;
+use crate::gap::posterior::Gains;
 use crate::gap::trust::Trust;
 
 /// Ids of effects that a class has at most: more are unknown.
@@ -285,6 +287,7 @@ fn weigh(
     let without =
         if found.effects.len() > 1 { score(search.without(none, found, number)) } else { 0.0 };
     let all = Fitted::of_fit(&found.fit);
+    let gains = Gains::new(search.design, &found.fit);
     let n = search.design.joints.len();
     let share = |members: std::ops::Range<usize>, joint: usize| {
         found.fit.share(search.design, members, joint)
@@ -293,7 +296,10 @@ fn weigh(
         (0..n).map(|joint| share(members.clone(), joint)).fold(0.0, f64::max)
     };
     let pieces = (0..count).into_par_iter().map(|k| {
-        let fitted = all[first + k].clone();
+        let logs = (search.design, search.records);
+        let held = held(logs, (&found.fit, &gains), first + k);
+        let widened = |of: Fitted, held: Held| of.widened(held.coordinate, held.sd);
+        let fitted = held.into_iter().fold(all[first + k].clone(), widened);
         let members = first + k..first + k + 1;
         let size = |joint: &usize| share(members.clone(), *joint);
         let by_size = |a: &usize, b: &usize| size(a).total_cmp(&size(b));
@@ -328,7 +334,8 @@ fn class(search: &Search<'_>, found: &Found, number: usize, tried: &[Tried]) -> 
         let is_rest = |id: &&str| *id == ids[number] || of.ids.contains(id);
         let others: Vec<&'static str> =
             of.ids.iter().copied().filter(|id| !ids.contains(id)).collect();
-        let near = of.score > found.score - search.design.tunables.class_nats;
+        // One that explains more has been taken back: held-out data is against it.
+        let near = (of.score - found.score).abs() < search.design.tunables.class_nats;
         if let [other] = others[..]
             && of.ids.len() == ids.len()
             && ids.iter().all(is_rest)

@@ -83,6 +83,18 @@ impl Fitted {
         all
     }
 
+    /// The same where a coordinate, which was held as it is, has a standard deviation.
+    #[must_use]
+    pub(in crate::gap) fn widened(mut self, coordinate: usize, sd: f64) -> Fitted {
+        let mut next = self.coordinates.clone();
+        next[coordinate] += DIFFERENCE * sd;
+        let changed = self.effect.parameters_of(&next).into_iter().zip(&self.parameters);
+        for (deviation, (next, here)) in self.deviations.iter_mut().zip(changed) {
+            *deviation = deviation.hypot((next - here) / DIFFERENCE);
+        }
+        self
+    }
+
     /// The parameter that is so many deviations beyond what can be, and by how many.
     #[must_use]
     pub fn beyond_bounds(&self) -> f64 {

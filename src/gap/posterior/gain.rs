@@ -150,6 +150,14 @@ impl<'a> Gains<'a> {
         self.products(&all, f64::INFINITY).iter().map(|(a, _)| a[(0, 0)]).collect()
     }
 
+    /// The most probable factor of a piece's first column, and its standard deviation; `None` where nothing
+    /// is known of it.
+    #[must_use]
+    pub(in crate::gap) fn factor(&self, piece: &PieceRows) -> Option<[f64; 2]> {
+        let (a, b) = self.products(&[piece], f64::INFINITY).remove(0);
+        (a[(0, 0)] > 0.0).then(|| [b[0] / a[(0, 0)], a[(0, 0)].sqrt().recip()])
+    }
+
     /// Gains of windows of a piece whose columns are those of `count` parts, one after another; rows below
     /// a frequency \[Hz\].
     #[must_use]

@@ -1,5 +1,7 @@
 //! What single members of a fit are worth: ratios of densities at 0.
 
+use nalgebra::DVector;
+
 use super::fit::Fit;
 
 impl Fit {
@@ -27,6 +29,19 @@ impl Fit {
         if all > 0.0 { f64::min(brought / all, 1.0) } else { 0.0 }
     }
 
+    /// Factors of the columns of a member.
+    #[must_use]
+    pub(in crate::gap) fn factors_of(&self, number: usize) -> DVector<f64> {
+        let from = self.mean.len() - self.hypothesis.columns() + self.first_of(number);
+        let count = self.hypothesis.members[number].piece.prior.len();
+        self.mean.rows(from, count).into_owned()
+    }
+
+    /// The first column of a member among those of all.
+    fn first_of(&self, number: usize) -> usize {
+        self.hypothesis.members[..number].iter().map(|member| member.piece.prior.len()).sum()
+    }
+
     /// The ratio of the densities of a member's first factors at 0, before and after (J. Dickey, Annals
     /// of Mathematical Statistics 42, 1971).
     fn evidence_of_columns(&self, number: usize, count: usize) -> Option<f64> {
@@ -34,8 +49,7 @@ impl Fit {
         if members[number].piece.is_fixed() {
             return None;
         }
-        let before = members[..number].iter().map(|member| member.piece.prior.len());
-        let effects = before.sum::<usize>();
+        let effects = self.first_of(number);
         let from = self.mean.len() - self.hypothesis.columns() + effects;
         let (_, sds) = self.prior();
         let known = self.covariance.view((from, from), (count, count)).into_owned().cholesky()?;

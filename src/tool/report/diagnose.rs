@@ -203,7 +203,7 @@ pub(super) fn sentence(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::NoGap => "no gap: model and robot are the same as far as the logs show",
         Verdict::ParametersOnly => "parameters only: no effect, the model's numbers are others",
-        Verdict::Effect => "an effect that the model has not",
+        Verdict::Effect => "an effect that the model does not have",
         Verdict::Partial => "an effect, and something that no known law explains",
         Verdict::Unknown => "a gap that no known law explains",
         Verdict::NotSeparable => "a gap that more laws explain than these logs can tell apart",

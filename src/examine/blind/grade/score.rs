@@ -1,6 +1,7 @@
 //! The score of one case.
 
 use std::collections::BTreeSet;
+use std::f64::consts::{PI, TAU};
 
 use super::super::label::{Kind, Label, Truth};
 use super::diagnosis::{Diagnosis, NamedEffect, Verdict};
@@ -13,6 +14,8 @@ const LARGEST_CLASS: usize = 5;
 const CLEAR_SHARE: f64 = 0.5;
 /// Largest accepted error of a parameter in standard deviations.
 const PARAMETER_SD: f64 = 3.0;
+/// Parameters of which a turn more is the same.
+const ANGLES: [&str; 3] = ["phase", "direction", "azimuth"];
 
 /// What is said of an effect, and whether it is there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -188,13 +191,17 @@ fn same_joints(truth: &Truth, said: &NamedEffect) -> bool {
     there == told
 }
 
-/// Whether each graded parameter is within its tolerance.
+/// Whether each graded parameter is within its tolerance: one without a deviation has to be exact.
 fn within(truth: &Truth, said: &NamedEffect) -> Vec<bool> {
     let graded = truth.parameters.iter().filter(|parameter| parameter.graded);
     graded
         .filter_map(|parameter| match said.parameter(&parameter.name, parameter.joint) {
             Some([value, sd]) => {
-                Some(sd > 0.0 && (value - parameter.value).abs() <= PARAMETER_SD * sd)
+                let mut missed = value - parameter.value;
+                if ANGLES.contains(&parameter.name.as_str()) {
+                    missed = (missed + PI).rem_euclid(TAU) - PI;
+                }
+                Some(missed.abs() <= PARAMETER_SD * sd)
             }
             // A zero parameter may be missing.
             None if parameter.value == 0.0 => None,
