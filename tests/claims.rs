@@ -124,7 +124,9 @@ fn claims_hold_for_a_payload() {
 
 #[test]
 fn claims_hold_for_stiction() {
+    // Curves of more than twice the everyday error: smaller ones are not asserted.
     check_case(23, 19, "stribeck");
+    check_case(24, 23, "stribeck");
 }
 
 #[test]

@@ -52,7 +52,7 @@ pub struct Logs<'a> {
     pub before: &'a [&'a Samples],
 }
 
-/// Diagnoses what has changed since the baseline, or, without one, all that the model has not;
+/// Diagnoses what has changed since the baseline, or, without one, all that the model does not have;
 /// `tell` is called with each phase that begins.
 #[must_use]
 pub fn diagnose_logs(

@@ -3,12 +3,11 @@
 mod calibration;
 mod decide;
 mod finding;
-
 mod found;
 mod held;
 mod search;
 mod shape;
-
+mod starts;
 mod trail;
 mod waves;
 mod window;

@@ -7,6 +7,7 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
 use super::shape::resolution;
+use super::starts::starts;
 use crate::arm::effects::{Effect, Role};
 use crate::gap::data::{Record, RecordKind};
 use crate::gap::design::{Design, PieceRows, piece_at};
@@ -14,10 +15,6 @@ use crate::gap::posterior::Gains;
 
 /// Parts of the shortest wave.
 const PARTS: f64 = 8.0;
-/// Orders that are looked at further.
-const STARTS: usize = 2;
-/// Least gain of an order that is looked at further, beside that of the best one of noise \[nats\].
-const LEAST: f64 = 4.0;
 /// Information on an order below which nothing is seen of it, of the largest one.
 const SEEN: f64 = 1e-2;
 /// Waves that have to be seen within the range of the joint.
@@ -74,27 +71,19 @@ impl Waves {
         design: &Design,
         gains: &Gains<'_>,
     ) -> Vec<PieceRows> {
-        let choices = ((self.orders[1] - self.orders[0]) / self.resolution).ceil();
-        let mut all = self.gains(records, design, gains);
-        all.retain(|(_, gain)| *gain > LEAST + choices.ln());
-        all.sort_by(|a, b| b.1.total_cmp(&a.1));
-        let mut starts: Vec<f64> = Vec::new();
-        for (order, _) in all {
-            let is_apart = |other: &f64| (order - other).abs() > 2.0 * self.resolution;
-            if starts.len() < STARTS && starts.iter().all(is_apart) {
-                starts.push(order);
-            }
-        }
+        let choices = ((self.orders[1] - self.orders[0]) / self.resolution).ceil() as usize;
+        let are_apart = |a: f64, b: f64| (a - b).abs() > 2.0 * self.resolution;
+        let starts = starts(self.gains(records, design, gains), choices, are_apart);
         let piece = |order: f64| {
             let mut shape = self.usual.clone();
             shape[self.coordinate] = order;
-            let empty = PieceRows::of_shape(self.effect, self.joint, shape, choices as usize);
+            let empty = PieceRows::of_shape(self.effect, self.joint, shape, choices);
             piece_at(design, records, &empty)
         };
         starts.into_iter().map(piece).collect()
     }
 
-    /// Orders with what their waves would gain, were they apart from all that is marginalised \[nats\].
+    /// What waves would gain, were they apart from all that is marginalised \[nats\], with their orders.
     fn gains(&self, records: &[Record<'_>], design: &Design, gains: &Gains<'_>) -> Vec<(f64, f64)> {
         let of = &design.joints[self.joint];
         let (weights, left) = gains.left(self.joint);
@@ -124,7 +113,7 @@ impl Waves {
             |k: usize| -> f64 { speeds.iter().map(|of| of.information(step * k as f64)).sum() };
         let known: Vec<f64> = numbers.clone().map(information).collect();
         let least = SEEN * known.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-        let gain = |(k, known): (usize, f64)| (step * k as f64, 0.5 * sums[k].norm_sqr() / known);
+        let gain = |(k, known): (usize, f64)| (0.5 * sums[k].norm_sqr() / known, step * k as f64);
         numbers.zip(known).filter(|(_, known)| *known > least).map(gain).collect()
     }
 }

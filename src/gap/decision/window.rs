@@ -4,10 +4,11 @@
 //! window would gain. The best ones are moved until their ends fit.
 
 use super::shape::{Move, climbed, lowest};
+use super::starts::starts;
 use crate::arm::effects::Effect;
 use crate::gap::data::Record;
 use crate::gap::design::{Design, PieceRows, Rise, Times, Whole};
-use crate::gap::posterior::Gains;
+use crate::gap::posterior::{Gains, WindowGains};
 
 /// Parts of a repetition at which windows begin and end, and those of the longest window: what acts for
 /// more than half of the time stops for a window.
@@ -17,10 +18,6 @@ const LONGEST: usize = PARTS / 2;
 const LEAST_GROWING: usize = 6;
 /// Times that an interval is halved: to a millionth of a window.
 const HALVED: usize = 20;
-/// Windows from which the best one is looked for.
-const STARTS: usize = 2;
-/// Least gain of a window that is looked at further \[nats\].
-const LEAST: f64 = 4.0;
 
 /// An effect that acts in windows, at a joint.
 pub(super) struct Windows {
@@ -88,12 +85,13 @@ impl Windows {
             self.whole.within(design, records, shape, &self.times)
         };
         let mut all = Vec::new();
-        for window in self.at_once(gains, lowest) {
+        let of_parts = gains.of_windows(&self.parts, PARTS, lowest);
+        for window in self.at_once(&of_parts) {
             let ends = [by(n - 3, 0.5 * self.part), by(n - 2, 0.5 * self.part)];
             all.push(climbed(gains, &at(window, None), &ends, 2.0 * lowest, &within));
         }
         if let Some(Rise { coordinate: k, most, share }) = self.whole.rise() {
-            for window in self.growing(gains, &|x| share(0.5 * most, x), lowest) {
+            for window in self.growing(&of_parts, &|x| share(0.5 * most, x)) {
                 // It has no sharp ends: they are looked for in larger steps.
                 let step = 0.1 * (window[1] - window[0]);
                 let moves = [by(k, 0.25 * most), by(n - 3, step), by(n - 2, step)];
@@ -104,9 +102,8 @@ impl Windows {
         all
     }
 
-    /// The best windows in which an effect is there at once, by the frequencies `below` \[Hz\]; in s.
-    fn at_once(&self, gains: &Gains<'_>, below: f64) -> Vec<[f64; 2]> {
-        let gains = gains.of_windows(&self.parts, PARTS, below);
+    /// The best windows in which an effect is there at once \[s\].
+    fn at_once(&self, gains: &WindowGains<'_>) -> Vec<[f64; 2]> {
         let all = (0..PARTS).flat_map(|from| {
             let gains = gains.at_once(from, LONGEST.min(self.last() - from));
             gains.into_iter().enumerate().map(move |(k, gain)| (gain, [from, from + k + 1]))
@@ -114,10 +111,9 @@ impl Windows {
         self.starts(all.collect())
     }
 
-    /// The best windows in which an effect grows and falls with a share of the part of the
-    /// window \[s\].
-    fn growing(&self, gains: &Gains<'_>, share: &dyn Fn(f64) -> f64, below: f64) -> Vec<[f64; 2]> {
-        let gains = gains.of_windows(&self.parts, PARTS, below);
+    /// The best windows in which an effect grows and falls: its share goes by the part of the window that
+    /// is over \[s\].
+    fn growing(&self, gains: &WindowGains<'_>, share: &dyn Fn(f64) -> f64) -> Vec<[f64; 2]> {
         let mut all = Vec::new();
         for count in
             (LEAST_GROWING..=LONGEST).filter(|count| count % (1 + count / LEAST_GROWING) == 0)
@@ -131,18 +127,10 @@ impl Windows {
     }
 
     /// The windows that explain most, apart from each other \[s\].
-    fn starts(&self, mut all: Vec<(f64, [usize; 2])>) -> Vec<[f64; 2]> {
-        let least = LEAST + (self.times.choices as f64).ln();
-        all.retain(|(gain, _)| *gain > least);
-        all.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let mut best: Vec<[usize; 2]> = Vec::new();
-        for (_, window) in all {
-            if best.len() < STARTS && best.iter().all(|known| are_apart(*known, window)) {
-                best.push(window);
-            }
-        }
+    fn starts(&self, all: Vec<(f64, [usize; 2])>) -> Vec<[f64; 2]> {
         let time = |k: usize| self.times.begins + self.part * k as f64;
-        best.into_iter().map(|window| window.map(time)).collect()
+        let best = starts(all, self.times.choices, are_apart).into_iter();
+        best.map(|window| window.map(time)).collect()
     }
 
     /// The last part at which a window may end: it may go on over the end of a period.

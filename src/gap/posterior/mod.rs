@@ -25,3 +25,4 @@ pub(in crate::gap) use gain::Gains;
 pub(in crate::gap) use hypothesis::{Hypothesis, Member};
 pub(in crate::gap) use sizes::{Sizes, halfway, usual};
 pub(in crate::gap) use start::Start;
+pub(in crate::gap) use windows::WindowGains;

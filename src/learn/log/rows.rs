@@ -71,7 +71,7 @@ impl Rows {
         if usable < MIN_ROWS {
             let why = log.rejected.first().map_or_else(String::new, |first| {
                 let count = log.rejected.len();
-                format!("; {count} were left out, row {}: {}", first.row, first.reason)
+                format!("; left out: {count}, the first is row {}: {}", first.row, first.reason)
             });
             return Err(LogError::Short { usable, needed: MIN_ROWS, why });
         }
