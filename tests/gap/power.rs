@@ -7,6 +7,8 @@ use crate::excited::{irb1600, normal};
 
 /// Rows of a log.
 const ROWS: usize = 800;
+/// Time from row to row \[s\].
+const STEP: f64 = 0.01;
 /// Largest deviation of a value, in standard deviations.
 const WITHIN: f64 = 4.0;
 /// Rate below which a joint rests \[rad/s\].
@@ -16,9 +18,18 @@ const TURN: usize = 50;
 const TURNS: usize = 5;
 const AT_REST: usize = 2;
 
-/// Power of a motion: base, mechanical power and losses by joint, with partial regeneration, noise,
-/// and the additional term `more` by row.
+/// Power of a motion that half of the braking power is given back of.
 fn log(seed: u64, more: &dyn Fn(&Powers, usize, f64) -> f64) -> Powers {
+    log_of(seed, [robot().drive.regeneration, 0.0], more)
+}
+
+/// Power of a motion: base, mechanical power and losses by joint, noise, and the additional term `more` by
+/// row; with the share that is given back and the time constant of the meter \[s\].
+fn log_of(
+    seed: u64,
+    [given_back, lag]: [f64; 2],
+    more: &dyn Fn(&Powers, usize, f64) -> f64,
+) -> Powers {
     let mut random = fastrand::Rng::with_seed(seed);
     let wave = |size: f64, random: &mut fastrand::Rng| -> Vec<f64> {
         let terms: Vec<[f64; 3]> =
@@ -36,15 +47,18 @@ fn log(seed: u64, more: &dyn Fn(&Powers, usize, f64) -> f64) -> Powers {
         (0..ROWS).filter(|row| rests(*row)).for_each(|row| of[row] = 0.0);
     }
     let tau: Vec<Vec<f64>> = sizes.iter().map(|size| wave(*size, &mut random)).collect();
-    let mut log = Powers { qd, tau, power: Vec::new() };
-    let model = robot();
-    for row in 0..ROWS {
+    let mut log = Powers { step: STEP, closed: true, qd, tau, power: Vec::new() };
+    // The second time, the meter shows what it does of a motion that repeats.
+    let mut shown = 0.0;
+    for row in (0..ROWS).chain(0..ROWS) {
         let of_joint = |j: usize| log.tau[j][row] * log.qd[j][row] + LOSS * log.tau[j][row].powi(2);
         let sum: f64 = (0..sizes.len()).map(of_joint).sum();
-        let share = if sum < 0.0 { model.drive.regeneration } else { 1.0 };
-        let noise = 0.2 * normal(&mut random);
-        log.power.push(150.0 + share * sum + more(&log, row, share) + noise);
+        let share = if sum < 0.0 { given_back } else { 1.0 };
+        let power = 150.0 + share * sum + more(&log, row, share);
+        shown = power + (shown - power) * (-STEP / lag).exp();
+        log.power.push(shown + 0.2 * normal(&mut random));
     }
+    log.power.drain(..ROWS);
     log
 }
 
@@ -108,7 +122,8 @@ fn two_losses_are_found() {
 fn a_load_on_the_dc_link_is_reported_as_base_load() {
     let found = found(&|_, _, share| 60.0 * share);
     assert_eq!(named(&found), [("base_load", None)]);
-    assert_eq!(found.effects[0].class, ["base_load", "brake_power"]);
+    // Coils of brakes do not hang on the link.
+    assert_eq!(found.effects[0].class, ["base_load"]);
     let estimate = &found.effects[0].parameters[0];
     assert!((estimate.value - 60.0).abs() < WITHIN * estimate.sd, "{estimate:?}");
 }
@@ -132,6 +147,35 @@ fn brakes_of_moving_axes_are_told_from_a_base_load() {
     let found = found(&|log, row, _| 50.0 * share(log, row));
     assert_eq!(named(&found), [("brake_power", None)]);
     assert_eq!(found.effects[0].class, ["brake_power"]);
+}
+
+/// They close some time after an axis has come to rest.
+#[test]
+fn brakes_close_after_a_time() {
+    const TIMEOUT: usize = 45;
+    let released = |log: &Powers, row: usize| {
+        let moved =
+            |qd: &&Vec<f64>| (0..TIMEOUT).any(|k| qd[(row + ROWS - k) % ROWS].abs() > RESTS);
+        log.qd.iter().filter(moved).count() as f64 / log.qd.len() as f64
+    };
+    let found = found(&|log, row, _| 50.0 * released(log, row));
+    assert_eq!(named(&found), [("brake_power", None)]);
+    let estimate = &found.effects[0].parameters[0];
+    assert!((estimate.value - 50.0).abs() < 0.1 * 50.0, "{estimate:?}");
+}
+
+/// A model of a drawing says neither what is given back nor how fast the meter is.
+#[test]
+fn what_is_given_back_and_the_meter_are_learnt_from_the_baseline() {
+    let meter = [0.75, 0.03];
+    let before = [log_of(1, meter, &|_, _, _| 0.0), log_of(2, meter, &|_, _, _| 0.0)];
+    let after = [log_of(3, meter, &|_, _, _| -8.0)];
+    let mut model = robot();
+    model.drive.regeneration = 0.0;
+    let found = diagnose_power(&model, &before, &after, &after, &|_| true).unwrap();
+    assert_eq!(named(&found), [("base_load", None)]);
+    let estimate = &found.effects[0].parameters[0];
+    assert!((estimate.value + 8.0).abs() < WITHIN * estimate.sd, "{estimate:?}");
 }
 
 /// With two kinds of losses the reference is accurate to half a percent only.

@@ -8,7 +8,6 @@
 
 mod amplitude;
 mod blocked;
-mod evidence;
 mod fit;
 mod gain;
 mod hypothesis;
@@ -19,7 +18,6 @@ mod sizes;
 mod start;
 mod windows;
 
-pub(in crate::gap) use evidence::Evidence;
 pub(in crate::gap) use fit::{Fit, fitted, fitted_as_written};
 pub(in crate::gap) use gain::Gains;
 pub(in crate::gap) use hypothesis::{Hypothesis, Member};

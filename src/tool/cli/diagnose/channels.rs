@@ -42,7 +42,13 @@ fn power(log: &PreparedLog) -> Option<Powers> {
             mean[k] += (measured[row] * (1.0 - share) + measured[next] * share) / count as f64;
         }
     }
-    Some(Powers { qd: block.qd.clone(), tau: block.tau.clone(), power: mean })
+    Some(Powers {
+        step: samples.step,
+        closed: matches!(samples.source, Source::Periodic { .. }),
+        qd: block.qd.clone(),
+        tau: block.tau.clone(),
+        power: mean,
+    })
 }
 
 /// Program runs in logs that mark the movements.
