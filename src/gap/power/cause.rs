@@ -1,6 +1,6 @@
 //! What may change the power.
 
-use super::Powers;
+use super::powers::Powers;
 use super::reference::Reference;
 use crate::arm::effects::{Effect, find};
 

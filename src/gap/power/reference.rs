@@ -2,7 +2,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use super::{Powers, squares};
+use super::powers::Powers;
 use crate::arm::robot::Model;
 
 /// Time constants of the meter that are tried \[s\].
@@ -66,7 +66,7 @@ impl Reference {
             reference.step(logs)?;
         }
         let missed: Vec<Vec<f64>> = logs.iter().map(|log| reference.missed(log)).collect();
-        let sum: f64 = missed.iter().map(|of| squares(of)).sum();
+        let sum: f64 = missed.iter().map(|of| of.iter().map(|x| x * x).sum::<f64>()).sum();
         reference.variance = sum / (count - reference.parameters()) as f64;
         let next = missed.iter().flat_map(|of| of.windows(2));
         let memory = next.map(|pair| pair[0] * pair[1]).sum::<f64>() / sum.max(1e-12);

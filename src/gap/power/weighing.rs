@@ -5,8 +5,9 @@ use std::collections::BTreeSet;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::cause::{Cause, FORMS};
+use super::found::PowerEffect;
+use super::powers::Powers;
 use super::reference::Reference;
-use super::{PowerEffect, Powers};
 use crate::gap::decision::Estimated;
 
 /// What an effect has to bring \[nats\].
@@ -80,7 +81,7 @@ impl<'a> Weighing<'a> {
                 }
             }
             gram += all.tr_mul(&all);
-            power += super::squares(&log.power);
+            power += log.power.iter().map(|x| x * x).sum::<f64>();
         }
         let count = count as f64;
         let power = (power / count.max(1.0)).sqrt();
