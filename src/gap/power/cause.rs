@@ -22,6 +22,7 @@ pub(super) struct Cause<'a> {
     coordinate: Coordinate,
 }
 
+/// Power of value 1, row by row.
 type Column<'a> = Box<dyn Fn(&Powers) -> Vec<f64> + Send + Sync + 'a>;
 
 /// What the form of a law may depend on: time in the log, torque or rate of a joint.
@@ -67,14 +68,9 @@ pub(super) fn causes<'a>(reference: &'a Reference, may: &dyn Fn(&str) -> bool) -
     add("base_load", None, base, Coordinate::Time, by_row(|log, row| reference.share(log, row)));
     // Brakes of single axes, or of all together, are held open while these move.
     for timeout in TIMEOUTS {
-        add(
-            "brake_power",
-            None,
-            base,
-            Coordinate::Time,
-            Box::new(move |log| log.released(timeout)),
-        );
-        let any = move |log: &Powers| log.released(timeout).iter().map(|x| x.ceil()).collect();
+        let share = move |log: &Powers| log.released(timeout);
+        add("brake_power", None, base, Coordinate::Time, Box::new(share));
+        let any = move |log: &Powers| share(log).iter().map(|x| f64::from(*x > 0.0)).collect();
         add("brake_power", None, base, Coordinate::Time, Box::new(any));
     }
     if reference.given_back > 0.0 {
@@ -93,8 +89,6 @@ pub(super) fn causes<'a>(reference: &'a Reference, may: &dyn Fn(&str) -> bool) -
     all
 }
 
-fn by_row<'a>(
-    column: impl Fn(&Powers, usize) -> f64 + Send + Sync + 'a,
-) -> Box<dyn Fn(&Powers) -> Vec<f64> + Send + Sync + 'a> {
+fn by_row<'a>(column: impl Fn(&Powers, usize) -> f64 + Send + Sync + 'a) -> Column<'a> {
     Box::new(move |log| (0..log.rows()).map(|row| column(log, row)).collect())
 }
