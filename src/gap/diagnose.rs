@@ -144,8 +144,23 @@ fn diagnose_telling(
     let plain = refitted(believed, (&design, &train));
     let refit = turned.as_ref().map_or_else(|| plain.clone(), |of| of.added_to(&plain));
     let models = Models { nominal: model, believed, refit: &refit, turned: turned.as_ref() };
-    let Graded { mut decision, mut best, shrink: mut graded } =
-        graded(&search, [&none, &found], &tried, held, &models);
+    let mut first = graded(&search, [&none, &found], &tried, held, &models);
+    // The most probable set may have members that the gates reject: without these, another one may be there.
+    let rejected = rejected(&first.decision, &settings.tunables);
+    if matches!(first.decision.verdict, Verdict::Unknown | Verdict::Partial) && !rejected.is_empty()
+    {
+        let mut fewer = effects.clone();
+        fewer.retain(|effect| !rejected.contains(&effect.id));
+        let again = Search::new(&train, &design, &fewer);
+        let Searched { none, best, tried, .. } = again.best(none.clone());
+        let found = polished(&again, &none, best);
+        let second = graded(&again, [&none, &found], &tried, held, &models);
+        let named = |of: &Graded| of.decision.effects.iter().map(|of| of.nats).sum::<f64>();
+        if named(&second) > named(&first) {
+            first = second;
+        }
+    }
+    let Graded { mut decision, mut best, shrink: mut graded } = first;
     if let Some(finding) = turned.as_ref().and_then(Turned::finding) {
         decision.add(finding);
         graded = shrink(held, [model, &plain.applied, &best.applied]);
@@ -188,6 +203,12 @@ fn diagnose_telling(
         before: Vec::new(),
         rivals: Some(rivals),
     }
+}
+
+/// Effects of enough evidence that the gates rejected.
+fn rejected(decision: &Decision, tunables: &Tunables) -> Vec<&'static str> {
+    let is_probable = |of: &&Finding| of.nats >= tunables.least_nats;
+    decision.candidates.iter().filter(is_probable).map(|of| of.effect.id).collect()
 }
 
 /// Models that a decision is compared with.
