@@ -3,6 +3,7 @@
 
 mod command;
 
+use std::f64::consts::TAU;
 use std::fs;
 use std::path::Path;
 
@@ -459,4 +460,26 @@ fn damaged_cases_are_refused(out: &Path, shown: &str) {
     refused(&["blind", "grade", shown], "take the one that was written");
     fs::remove_file(&key).unwrap();
     refused(&["blind", "grade", shown], "name the folder that");
+}
+
+/// A phase is compared modulo a turn; a parameter without a deviation has to be exact.
+#[test]
+fn parameters_are_compared_with_their_deviation() {
+    let truth = 3.1;
+    for (name, value, sd, is_within) in [
+        ("phase", truth - TAU, 0.01, true),
+        ("phase", -truth, 0.01, false),
+        ("offset", truth - TAU, 0.01, false),
+        ("offset", truth, 0.0, true),
+        ("offset", truth + 1e-9, 0.0, false),
+    ] {
+        let mut label = label("a", Kind::One, &["ripple"]);
+        let parameter = &mut label.effects[0].parameters[0];
+        (parameter.name, parameter.value) = (name.into(), truth);
+        let mut said = asserted("ripple", &[2], &[], 0.0);
+        said["parameters"] = serde_json::json!({name: {"value": value, "sd": sd, "unit": ""}});
+        let grades = blind::grade(&[label], &[diagnosis("effect", &[said])], None).unwrap();
+        let counted = hits(&grades, "parameters_within_3_sd");
+        assert_eq!(counted, (usize::from(is_within), 1), "{name} {value} {sd}");
+    }
 }

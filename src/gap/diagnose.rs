@@ -313,13 +313,10 @@ impl Models<'_> {
 fn left_at_most(effect: &Effect, tunables: &Tunables) -> f64 {
     match (effect.nature, effect.acts) {
         (Nature::Law, Acts::Always | Acts::AfterReversals) => tunables.left_in_heldout,
-        // Robots warm up differently each day.
-        (Nature::Law, Acts::OverTime) => 1.0,
-        // A window that does not come again leaves other logs as they are; the refitted model has the
-        // parameters, too.
-        (Nature::Law, Acts::InWindow) | (Nature::Parameter | Nature::Parameters, _) => {
-            1.0 + NO_WORSE
-        }
+        // Robots warm up differently each day; the refitted model has the parameters, too.
+        (Nature::Law, Acts::OverTime) | (Nature::Parameter | Nature::Parameters, _) => 1.0,
+        // A window that does not come again leaves other logs as they are.
+        (Nature::Law, Acts::InWindow) => 1.0 + NO_WORSE,
     }
 }
 

@@ -111,7 +111,11 @@ impl Diagnosis {
     pub fn add_power(&mut self, found: &PowerFound) {
         // Torques that are wrong make wrong powers.
         let is_measured = |said: &Finding| said.effect.subject == Subject::Measurement;
-        let trusted = !self.effects.iter().any(is_measured);
+        let trusted = match self.verdict {
+            Verdict::NoGap | Verdict::ParametersOnly => true,
+            Verdict::Effect => !self.effects.iter().any(is_measured),
+            _ => false,
+        };
         let effects = if trusted { found.effects.as_slice() } else { &[] };
         for of in effects {
             self.effects.push(Finding {

@@ -9,6 +9,8 @@ use super::{diagnosed, named};
 /// An order that is no multiple of a motor's turn, and how well it is told \[1/rad\].
 const ORDER: f64 = 17.3;
 const TOLD: f64 = 0.05;
+/// Stated deviations within which the order lies.
+const WITHIN: f64 = 3.0;
 /// Amplitude of the wave \[Nm\], and its relative tolerance.
 const AMPLITUDE: f64 = 6.0;
 const TOLERANCE: f64 = 0.05;
@@ -25,6 +27,7 @@ fn waves_of_any_order_are_found() {
     assert_eq!(named(&found), [("ripple", vec![3])]);
     let [amplitude, _, order] = &found.effects[0].parameters[..] else { unreachable!() };
     assert!((order.value - ORDER).abs() < TOLD, "{order:?}");
+    assert!((order.value - ORDER).abs() < WITHIN * order.sd && order.sd < TOLD, "{order:?}");
     assert!((amplitude.value / AMPLITUDE - 1.0).abs() < TOLERANCE, "{amplitude:?}");
 }
 

@@ -18,7 +18,7 @@ const TURN: usize = 50;
 const TURNS: usize = 5;
 const AT_REST: usize = 2;
 
-/// Power of a motion that half of the braking power is given back of.
+/// Power of a motion; half of the braking power is given back, and the meter has no lag.
 fn log(seed: u64, more: &dyn Fn(&Powers, usize, f64) -> f64) -> Powers {
     log_of(seed, [robot().drive.regeneration, 0.0], more)
 }
@@ -117,13 +117,19 @@ fn two_losses_are_found() {
     assert_eq!(reported, [("base_load", None), ("iron_loss", Some(2))]);
 }
 
+/// A few watts beside a large loss may be its form.
+#[test]
+fn what_the_form_of_a_loss_may_do_is_no_second_effect() {
+    let more = |log: &Powers, row: usize, share: f64| 8.0 + share * 60.0 * log.qd[2][row].powi(2);
+    assert_eq!(named(&found(&more)), [("iron_loss", Some(2))]);
+}
+
 /// A load on the DC link consumes a part of the regenerated energy.
 #[test]
 fn a_load_on_the_dc_link_is_reported_as_base_load() {
     let found = found(&|_, _, share| 60.0 * share);
     assert_eq!(named(&found), [("base_load", None)]);
-    // Coils of brakes do not hang on the link.
-    assert_eq!(found.effects[0].class, ["base_load"]);
+    assert_eq!(found.effects[0].class, ["base_load", "brake_power"]);
     let estimate = &found.effects[0].parameters[0];
     assert!((estimate.value - 60.0).abs() < WITHIN * estimate.sd, "{estimate:?}");
 }

@@ -334,8 +334,7 @@ fn class(search: &Search<'_>, found: &Found, number: usize, tried: &[Tried]) -> 
         let is_rest = |id: &&str| *id == ids[number] || of.ids.contains(id);
         let others: Vec<&'static str> =
             of.ids.iter().copied().filter(|id| !ids.contains(id)).collect();
-        // One that explains more has been taken back: held-out data is against it.
-        let near = (of.score - found.score).abs() < search.design.tunables.class_nats;
+        let near = of.score > found.score - search.design.tunables.class_nats;
         if let [other] = others[..]
             && of.ids.len() == ids.len()
             && ids.iter().all(is_rest)

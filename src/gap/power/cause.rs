@@ -66,12 +66,20 @@ pub(super) fn causes<'a>(reference: &'a Reference, may: &dyn Fn(&str) -> bool) -
     add("base_load", None, base, Coordinate::Time, Box::new(|log| vec![1.0; log.rows()]));
     // What hangs on the link of the drives takes what joints give back.
     add("base_load", None, base, Coordinate::Time, by_row(|log, row| reference.share(log, row)));
-    // Brakes of single axes, or of all together, are held open while these move.
+    // Brakes of single axes, or of all together, are held open while these move; their coils may hang on
+    // the link, too.
     for timeout in TIMEOUTS {
         let share = move |log: &Powers| log.released(timeout);
         add("brake_power", None, base, Coordinate::Time, Box::new(share));
-        let any = move |log: &Powers| share(log).iter().map(|x| f64::from(*x > 0.0)).collect();
+        let any = move |log: &Powers| -> Vec<f64> {
+            share(log).iter().map(|x| f64::from(*x > 0.0)).collect()
+        };
         add("brake_power", None, base, Coordinate::Time, Box::new(any));
+        let on_link = move |log: &Powers| {
+            let of_row = |(row, any): (usize, f64)| any * reference.share(log, row);
+            any(log).into_iter().enumerate().map(of_row).collect()
+        };
+        add("brake_power", None, base, Coordinate::Time, Box::new(on_link));
     }
     if reference.given_back > 0.0 {
         let kept = |log: &Powers, row| -reference.given_back * reference.sum(log, row).min(0.0);

@@ -20,12 +20,15 @@ const ROWS: usize = 10;
 /// Reference of the baseline.
 #[derive(Clone)]
 pub(super) struct Reference {
+    /// Base power \[W\].
     pub base: f64,
+    /// Losses by joint \[W/(Nm)²\].
     pub loss: Vec<f64>,
-    /// Loss in the drives, of the power that passes through them.
+    /// Loss in the drives, of the power that passes through them \[1\].
     through: f64,
-    /// What the supply takes of what the drives need, and of what they give back.
+    /// Power from the supply, of what the drives need \[1\].
     taken: f64,
+    /// Power to the supply, of what the drives give back \[1\].
     pub given_back: f64,
     /// Time constant of the meter \[s\].
     pub lag: f64,
@@ -35,6 +38,15 @@ pub(super) struct Reference {
     pub independent: f64,
     /// A root of the covariance of the parameters.
     pub root: DMatrix<f64>,
+}
+
+/// Products of the columns, each of which is divided by its norm.
+struct Products {
+    gram: DMatrix<f64>,
+    /// With what is missed.
+    right: DVector<f64>,
+    /// The norms.
+    scale: DVector<f64>,
 }
 
 impl Reference {
@@ -98,34 +110,15 @@ impl Reference {
 
     /// A step of Gauss and Newton.
     fn step(&mut self, logs: &[Powers]) -> Option<()> {
-        let (mut gram, mut right) = (self.gram(logs), DVector::zeros(self.parameters()));
-        for log in logs {
-            right += self.columns(log).tr_mul(&DVector::from_vec(self.missed(log)));
-        }
-        let scale = gram.diagonal().map(|square| square.sqrt().max(1e-12));
-        unscale(&mut gram, &scale);
-        // Loads that never vary tell nothing of their losses.
-        gram += DMatrix::identity(scale.len(), scale.len()) * TOLD;
-        let moved = Cholesky::new(gram)?.solve(&right.component_div(&scale)).component_div(&scale);
+        let Products { gram, right, scale } = self.products(logs);
+        let moved = Cholesky::new(gram)?.solve(&right).component_div(&scale);
         *self = self.moved(&moved);
         Some(())
     }
 
-    fn gram(&self, logs: &[Powers]) -> DMatrix<f64> {
-        let mut gram = DMatrix::zeros(self.parameters(), self.parameters());
-        for log in logs {
-            let columns = self.columns(log);
-            gram += columns.tr_mul(&columns);
-        }
-        gram
-    }
-
     /// A root of the covariance of the parameters.
     fn spread(&self, logs: &[Powers]) -> Option<DMatrix<f64>> {
-        let mut gram = self.gram(logs);
-        let scale = gram.diagonal().map(|square| square.sqrt().max(1e-12));
-        unscale(&mut gram, &scale);
-        gram += DMatrix::identity(scale.len(), scale.len()) * TOLD;
+        let Products { mut gram, scale, .. } = self.products(logs);
         let variance = (self.variance / self.independent).max(f64::MIN_POSITIVE);
         let last = scale.len() - 1;
         gram[(last, last)] += variance / (GIVEN_BACK * scale[last]).powi(2);
@@ -134,6 +127,21 @@ impl Reference {
             row *= variance.sqrt() / scale;
         }
         Some(root)
+    }
+
+    fn products(&self, logs: &[Powers]) -> Products {
+        let count = self.parameters();
+        let (mut gram, mut right) = (DMatrix::zeros(count, count), DVector::zeros(count));
+        for log in logs {
+            let columns = self.columns(log);
+            gram += columns.tr_mul(&columns);
+            right += columns.tr_mul(&DVector::from_vec(self.missed(log)));
+        }
+        let scale = gram.diagonal().map(|square| square.sqrt().max(1e-12));
+        let mut gram = gram.zip_map(&(&scale * scale.transpose()), |x, scale| x / scale);
+        // Loads that never vary tell nothing of their losses.
+        gram += DMatrix::identity(count, count) * TOLD;
+        Products { gram, right: right.component_div(&scale), scale }
     }
 
     /// What the parameters are multiplied by, row by row, as the meter shows it.
@@ -170,9 +178,4 @@ impl Reference {
         let shown = log.lagged(taken, self.lag);
         log.power.iter().zip(shown).map(|(power, shown)| power - self.base - shown).collect()
     }
-}
-
-fn unscale(gram: &mut DMatrix<f64>, scale: &DVector<f64>) {
-    let (rows, columns) = gram.shape();
-    *gram = DMatrix::from_fn(rows, columns, |i, k| gram[(i, k)] / (scale[i] * scale[k]));
 }
