@@ -86,13 +86,20 @@ impl Calibration {
         of.iter().rev().find(|bin| inclusion >= bin.from).copied()
     }
 
-    /// The probability that is stated for one of the evidence.
+    /// The probability that is stated for one of the evidence: not more than for stronger evidence, of which
+    /// more cases may have been counted.
     #[must_use]
     pub fn stated(&self, inclusion: f64, is_asserted: bool) -> f64 {
-        let expected = EXPECTED[usize::from(!is_asserted)];
-        let [of, there] =
-            self.count(inclusion, is_asserted).map_or([0, 0], |bin| [bin.of, bin.there]);
-        (there as f64 + WEIGHT * expected) / (of as f64 + WEIGHT)
+        let (all, expected) = if is_asserted {
+            (&self.asserted, EXPECTED[0])
+        } else {
+            (&self.considered, EXPECTED[1])
+        };
+        let from = self.count(inclusion, is_asserted).map_or(0.0, |bin| bin.from);
+        all.iter()
+            .filter(|bin| bin.from >= from)
+            .map(|bin| (bin.there as f64 + WEIGHT * expected) / (bin.of as f64 + WEIGHT))
+            .fold(1.0, f64::min)
     }
 }
 
@@ -134,7 +141,17 @@ mod tests {
         let of = Calibration::counted("test".to_owned(), 20, [&asserted, &[]]);
         assert!(of.is_fresh());
         assert!((of.stated(0.999, true) - (18.0 + 1.9) / 22.0).abs() < 1e-12);
-        assert!((of.stated(0.6, true) - 0.95).abs() < 1e-12);
+        // Nothing was counted for 0.6, but stronger evidence was right less often than expected.
+        assert!((of.stated(0.6, true) - (18.0 + 1.9) / 22.0).abs() < 1e-12);
         assert!((of.stated(0.999, false) - 0.3).abs() < 1e-12);
+        let nothing = Calibration::counted(String::new(), 0, [&[], &[]]);
+        assert!((nothing.stated(0.6, true) - 0.95).abs() < 1e-12);
+        // One right case of weak evidence makes it no more probable than strong evidence.
+        let one = Calibration::counted(
+            String::new(),
+            21,
+            [&[&asserted[..], &[(0.1, true)]].concat(), &[]],
+        );
+        assert!(one.stated(0.1, true) <= one.stated(0.999, true));
     }
 }

@@ -112,7 +112,8 @@ impl<'a> Weighing<'a> {
                 .max_by(|a, b| a.0.nats.total_cmp(&b.0.nats));
             match best {
                 Some((fit, k))
-                    if self.told(&given, &fit) > LEAST_NATS && !self.has_form(&fit, &with(k)) =>
+                    if self.told(&given, &fit) > LEAST_NATS
+                        && !self.may_be_form(&fit, &with(k)) =>
                 {
                     chosen.push(k);
                 }
@@ -146,8 +147,8 @@ impl<'a> Weighing<'a> {
         })
     }
 
-    /// Whether one of some causes is less than the form of a larger one of another effect may do.
-    fn has_form(&self, fit: &Fit, chosen: &[usize]) -> bool {
+    /// Whether one of some causes is so small that it may be the form of a larger one of another effect.
+    fn may_be_form(&self, fit: &Fit, chosen: &[usize]) -> bool {
         let sizes: Vec<(&str, f64)> = chosen
             .iter()
             .zip(&fit.values)
