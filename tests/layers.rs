@@ -87,17 +87,19 @@ const WINGS: [Wing; 7] = [
             room("retrofit", &["rapid", "arm", "retime", "emit"]),
             room("generate", &["rapid", "arm", "retime", "emit", "retrofit"]),
             room("lint", &["rapid", "arm", "path", "motion", "energy"]),
+            room("place", &["rapid", "arm", "retime", "retrofit"]),
+            room("suggest", &["rapid", "arm", "retime", "retrofit", "lint"]),
             room("config", &["lint"]),
             room(
                 "report",
-                &["rapid", "arm", "retime", "learn", "gap", "examine", "retrofit", "lint"],
+                &["rapid", "arm", "retime", "learn", "gap", "examine", "retrofit", "lint", "place", "suggest"],
             ),
             room("lsp", &["rapid", "arm", "retime", "lint"]),
             room(
                 "cli",
                 &[
                     "rapid", "arm", "retime", "learn", "gap", "examine", "emit", "retrofit",
-                    "generate", "lint", "config", "report", "lsp",
+                    "generate", "lint", "place", "suggest", "config", "report", "lsp",
                 ],
             ),
         ],

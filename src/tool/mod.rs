@@ -2,6 +2,8 @@
 //!
 //! - [`emit`], [`retrofit`], [`generate`]: RAPID text from streams, the main job, programs from points;
 //! - [`lint`]: wasted energy, with joules and fixes;
+//! - [`place`]: where frames should stand;
+//! - [`suggest`]: changes that a person has to approve;
 //! - [`report`]: results as text, JSON and HTML;
 //! - [`config`]: `joulepath.toml`;
 //! - `lsp`: the language server;
@@ -16,5 +18,7 @@ pub mod generate;
 pub mod lint;
 #[cfg(feature = "lsp")]
 pub mod lsp;
+pub mod place;
 pub mod report;
 pub mod retrofit;
+pub mod suggest;

@@ -18,4 +18,4 @@ pub mod timing;
 pub mod virtual_controller;
 
 pub use timeline::Simulation;
-pub use virtual_controller::{Options, Step, replay, simulate};
+pub use virtual_controller::{Options, Step, replay, simulate, unreached};

@@ -5,12 +5,14 @@ mod layout;
 mod load;
 mod machine;
 mod options;
+mod reach;
 mod replay;
 mod state;
 mod target;
 mod time_limit;
 
 pub use options::Options;
+pub use reach::unreached;
 pub use replay::{Step, replay};
 
 use state::VirtualController;

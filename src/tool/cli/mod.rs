@@ -11,6 +11,7 @@ mod excite;
 mod generate;
 mod identify;
 mod input;
+mod keep_outs;
 mod lint;
 mod listing;
 mod load;
@@ -20,6 +21,7 @@ mod lsp;
 mod optimize;
 mod output;
 mod parse;
+mod place;
 mod predict;
 mod program_output;
 mod refresh;
@@ -30,6 +32,7 @@ mod simulate;
 mod standstill;
 mod streams;
 mod streamtest;
+mod suggest;
 mod undo;
 
 use std::io::{ErrorKind, Write as _};
@@ -55,6 +58,7 @@ enum Command {
     Optimize(Box<optimize::OptimizeArgs>),
     Refresh(Box<refresh::RefreshArgs>),
     Generate(generate::GenerateArgs),
+    Place(Box<place::PlaceArgs>),
     Standstill(standstill::StandstillArgs),
     Excite(Box<excite::ExciteArgs>),
     Streamtest(streamtest::StreamtestArgs),
@@ -79,6 +83,7 @@ pub fn command_line() -> ExitCode {
         Command::Optimize(args) => optimize::run(&args),
         Command::Refresh(args) => refresh::run(&args),
         Command::Generate(args) => generate::run(&args),
+        Command::Place(args) => place::run(&args),
         Command::Standstill(args) => standstill::run(&args),
         Command::Excite(args) => excite::run(&args),
         Command::Streamtest(args) => streamtest::run(&args),

@@ -7,20 +7,18 @@ use std::process::ExitCode;
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use nalgebra::{Point3, Vector3};
 use similar::TextDiff;
 
 use super::common::{self, Format, Job, ProgramArgs};
+use super::keep_outs::keep_outs;
 use super::program_output::{
     current_bytes, refuse_nested_output, whole_backup, write_folder, write_in_place,
 };
-use super::{backinfo, input, listing, output, streams, undo};
-use crate::arm::kinematics::{self, Obstacle, Plane};
+use super::{backinfo, input, listing, output, streams, suggest, undo};
 use crate::rapid::text::charset;
 use crate::retime::optimize::cost::Cost;
 use crate::retime::optimize::freedom::{Bound, Freedom};
 use crate::retime::optimize::retime::SLOWEST;
-use crate::tool::config::KeepOut;
 use crate::tool::emit::Layout;
 use crate::tool::report::place::Places;
 use crate::tool::report::{self};
@@ -28,6 +26,7 @@ use crate::tool::retrofit::{
     Budget, CLOSEST_S, Form, Objective, Retrofit, SPACING_S, Settings, freed, is_streams, retrofit,
     written_in,
 };
+use crate::tool::suggest::Applied;
 
 /// Retrofit a program: the same work with less energy in no more time.
 #[derive(Debug, Args)]
@@ -135,6 +134,16 @@ pub(super) struct OptimizeArgs {
     )]
     dwell_pose: Option<f64>,
 
+    /// List changes that a person has to approve, each simulated in the whole cycle: zones, joint
+    /// movements for lines, heights, speeds, points on the way. Nothing is written.
+    #[arg(long, conflicts_with_all = ["out", "diff", "in_place", "report", "apply"])]
+    suggest: bool,
+
+    /// Make these suggestions (their numbers, or all) before the retrofit, as far as each saves energy
+    /// beside the others. The cycle takes no longer than before them.
+    #[arg(long, value_name = "N,…|all")]
+    apply: Option<String>,
+
     /// Exit with 1 if some movement was refused.
     #[arg(long)]
     strict: bool,
@@ -203,22 +212,44 @@ pub(super) fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
     if args.undo {
         return undo_in_place(args);
     }
-    optimize_job(args, &common::prepare(&args.program)?)
+    let job = common::prepare(&args.program)?;
+    if args.suggest {
+        return suggest::list(&args.program, &job);
+    }
+    match &args.apply {
+        None => optimize_job(args, &job, &job, None),
+        Some(numbers) => {
+            let applied = suggest::apply(&args.program, &job, numbers)?;
+            let files = applied.files.clone();
+            let changed = Job { files, ..common::prepare(&args.program)? };
+            optimize_job(args, &changed, &job, Some(&applied))
+        }
+    }
 }
 
 /// Optimises a program that already has streams and replaces these.
 pub(super) fn refresh(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
-    if args.undo {
-        bail!("refresh cannot undo changes; use joulepath optimize --undo");
+    if args.undo || args.suggest || args.apply.is_some() {
+        bail!("refresh makes streams anew; use joulepath optimize for --undo, --suggest and --apply");
     }
     let mut input = input::read(&args.program.cell.paths)?;
     let streams = streams::remove_streams(&mut input)?;
     let job = common::prepare_read(&args.program, input)?;
-    optimize_job(args, &Job { streams, ..job })
+    let job = Job { streams, ..job };
+    optimize_job(args, &job, &job, None)
 }
 
-fn optimize_job(args: &OptimizeArgs, job: &Job) -> anyhow::Result<ExitCode> {
-    let settings = settings(args, job)?;
+/// Retrofits a program. `original`: the program as the files have it, before suggestions.
+fn optimize_job(
+    args: &OptimizeArgs,
+    job: &Job,
+    original: &Job,
+    applied: Option<&Applied>,
+) -> anyhow::Result<ExitCode> {
+    let mut settings = settings(args, job)?;
+    if let (Some(applied), Budget::AsBefore) = (applied, settings.budget) {
+        settings.budget = Budget::Takt(applied.cycle_s[0]);
+    }
     output::refuse_inputs(&[("--report", args.report.as_ref())], job.read_paths())?;
     let quiet = args.program.cell.quiet;
     // The folder of a single task does not include the controller's module list.
@@ -256,10 +287,10 @@ fn optimize_job(args: &OptimizeArgs, job: &Job) -> anyhow::Result<ExitCode> {
     let places = Places::new(&sources);
     let mut written = Vec::new();
     if let Some(folder) = &args.out {
-        written.extend(write_folder(folder, job, &result, backup)?);
+        written.extend(write_folder(folder, original, &result.outputs, backup)?);
     }
     if args.in_place {
-        written.extend(write_in_place(paths, job, &result)?);
+        written.extend(write_in_place(paths, original, &result)?);
     }
     if let Some(path) = &args.report {
         let html = report::html::optimize_report(&result, &job.files, &job.model, &job.entry)?;
@@ -272,10 +303,17 @@ fn optimize_job(args: &OptimizeArgs, job: &Job) -> anyhow::Result<ExitCode> {
     }
     common::print(
         args.program.format,
-        || report::json::retrofit(&job.model, &job.entry, places, &result, &written),
+        || {
+            let mut value =
+                report::json::retrofit(&job.model, &job.entry, places, &result, &written);
+            if let Some(applied) = applied {
+                value["applied"] = report::suggestions::applied_json(applied);
+            }
+            value
+        },
         || {
             if args.diff || job.is_refreshed() {
-                diff(job, &result)
+                diff(original, &result)
             } else {
                 report::text::retrofit(&job.model, places, &result)
             }
@@ -323,7 +361,7 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
             loads: None,
             deviation: if args.free_path { deviation(args.deviation)? } else { 0.0 },
             freed: job.files.iter().flat_map(|source| freed(&source.file)).collect(),
-            keep_out: job.config.keep_out.iter().map(obstacle).collect::<Result<_, _>>()?,
+            keep_out: keep_outs(&job.config)?,
         },
         inline_targets: args.inline_targets,
         form: match args.emit {
@@ -348,28 +386,6 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
         pareto: usize::from(args.pareto),
         written_elsewhere: written_in(job.others()),
     })
-}
-
-fn obstacle(part: &KeepOut) -> anyhow::Result<Obstacle> {
-    match part {
-        KeepOut::Box([one, other]) => {
-            if one.iter().chain(other).any(|x| !x.is_finite()) {
-                bail!("keep_out: box {one:?}, {other:?}: give two corners in m");
-            }
-            let corners = [one, other].map(|corner| Point3::from(*corner));
-            Ok(Obstacle::KeepOut(kinematics::KeepOut::between(corners[0], corners[1])))
-        }
-        KeepOut::Plane([x, y, z, distance]) => {
-            let normal = Vector3::new(*x, *y, *z);
-            let size = normal.norm();
-            if !(size > 0.0 && size.is_finite() && distance.is_finite()) {
-                bail!(
-                    "keep_out: plane [{x}, {y}, {z}, {distance}]: give a normal and a distance, m"
-                );
-            }
-            Ok(Obstacle::Plane(Plane { normal: normal / size, distance: distance / size }))
-        }
-    }
 }
 
 /// The bound of a speed that a flag may free.

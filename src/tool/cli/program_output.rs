@@ -39,10 +39,10 @@ fn program_folder(paths: &[PathBuf], job: &Job) -> anyhow::Result<PathBuf> {
 fn rest_of_backup(
     root: &Path,
     out: &Path,
-    (job, result): (&Job, &Retrofit),
+    (job, outputs): (&Job, &[OutputFile]),
 ) -> anyhow::Result<Vec<(PathBuf, Vec<u8>)>> {
     let known: BTreeSet<PathBuf> =
-        result.outputs.iter().map(|file| PathBuf::from(&file.path)).collect();
+        outputs.iter().map(|file| PathBuf::from(&file.path)).collect();
     let is_stream = |path: &Path| job.streams.modules.iter().any(|one| is_same_file(one, path));
     let mut rest = Vec::new();
     let mut folders = vec![root.to_owned()];
@@ -93,10 +93,10 @@ pub(super) fn refuse_nested_output(folder: &Path, paths: &[PathBuf]) -> anyhow::
 pub(super) fn write_folder(
     folder: &Path,
     job: &Job,
-    result: &Retrofit,
+    outputs: &[OutputFile],
     backup: Option<&Path>,
 ) -> anyhow::Result<Vec<String>> {
-    for file in &result.outputs {
+    for file in outputs {
         let path = folder.join(&file.path);
         if job.files.iter().any(|source| is_same_file(&path, Path::new(&source.file.path))) {
             bail!(
@@ -109,23 +109,23 @@ pub(super) fn write_folder(
     let rest = match backup {
         Some(root) => {
             let out = std::path::absolute(folder)?;
-            rest_of_backup(root, &out.canonicalize().unwrap_or(out), (job, result))?
+            rest_of_backup(root, &out.canonicalize().unwrap_or(out), (job, outputs))?
         }
         None => Vec::new(),
     };
     let files =
-        new_first(result).map(|file| (Path::new(&file.path), encoded(job, file, &file.bytes)));
+        new_first(outputs).map(|file| (Path::new(&file.path), encoded(job, file, &file.bytes)));
     let unchanged = rest.iter().map(|(path, bytes)| (path.as_path(), Cow::from(bytes)));
     output::write_folder(folder, files.chain(unchanged))?;
-    let written = result.outputs.iter().map(|file| folder.join(&file.path));
+    let written = outputs.iter().map(|file| folder.join(&file.path));
     let written = written.chain(rest.iter().map(|(path, _)| folder.join(path)));
     Ok(written.map(|path| path.display().to_string()).collect())
 }
 
 /// New files before the files that call them: an interrupted write leaves a working program.
-fn new_first(result: &Retrofit) -> impl Iterator<Item = &OutputFile> {
+fn new_first(outputs: &[OutputFile]) -> impl Iterator<Item = &OutputFile> {
     let of =
-        |new: bool| result.outputs.iter().filter(move |file| (file.kind == OutputKind::New) == new);
+        |new: bool| outputs.iter().filter(move |file| (file.kind == OutputKind::New) == new);
     of(true).chain(of(false))
 }
 
@@ -136,7 +136,7 @@ pub(super) fn write_in_place(
     result: &Retrofit,
 ) -> anyhow::Result<Vec<String>> {
     let mut changes = Vec::new();
-    for file in new_first(result) {
+    for file in new_first(&result.outputs) {
         let (path, after) = (path_in_tree(job, file), encoded(job, file, &file.bytes));
         let before = match input_file(job, file) {
             Some((path, bytes)) => {

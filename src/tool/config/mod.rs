@@ -22,6 +22,8 @@ pub struct Config {
     pub entry: Option<String>,
     /// Cycle time, s.
     pub takt_s: Option<f64>,
+    /// Hours in which the cell works in a year.
+    pub hours_per_year: Option<f64>,
     /// Minimum time between two points of a stream, s.
     pub spacing_s: Option<f64>,
     /// Times of inputs, s.
@@ -63,7 +65,7 @@ pub enum ConfigError {
     },
     /// Its content is wrong.
     #[error(
-        "{path}: {reason}; known keys are robot, entry, takt_s, spacing_s, [inputs], [assume], \
+        "{path}: {reason}; known keys are robot, entry, takt_s, hours_per_year, spacing_s, [inputs], [assume], \
          [[keep_out]] with box or plane, and [lint]"
     )]
     Wrong {

@@ -63,6 +63,7 @@ pub use pipeline::retrofit;
 pub use read::read_program;
 pub use settings::{Budget, CLOSEST_S, Form, Objective, SPACING_S, Settings};
 pub use signals::{SignalKind, SignalShift};
+pub(in crate::tool) use simulated::Simulated;
 pub use uncertainty::Uncertainty;
 pub(in crate::tool) use verify::{parses, run_again};
 pub(in crate::tool) use verify_speeds::largest_share;

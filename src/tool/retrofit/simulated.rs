@@ -14,13 +14,13 @@ pub(super) const TIME_TOLERANCE: f64 = 1e-6;
 pub(super) const ENDPOINT_TOLERANCE: f64 = 1e-4;
 
 /// One simulated cycle with its energy.
-pub(super) struct Simulated {
-    pub(super) simulation: Simulation,
-    pub(super) account: Account,
+pub(in crate::tool) struct Simulated {
+    pub(in crate::tool) simulation: Simulation,
+    pub(in crate::tool) account: Account,
 }
 
 impl Simulated {
-    pub(super) fn new(
+    pub(in crate::tool) fn new(
         program: &Program,
         entry: RoutineId,
         model: &Model,
@@ -32,6 +32,16 @@ impl Simulated {
     /// A simulation with the energy of this robot.
     pub(super) fn with_energy(model: &Model, simulation: Simulation) -> Simulated {
         Simulated { account: account(model, &simulation), simulation }
+    }
+
+    /// Number of runs that could not be simulated as programmed.
+    pub(in crate::tool) fn problems(&self) -> usize {
+        let is_problem = |what: &What| match what {
+            What::Run(run) => run.problem.is_some(),
+            What::Left(_) => true,
+            What::Wait(_) | What::Output(..) => false,
+        };
+        self.simulation.events.iter().filter(|event| is_problem(&event.what)).count()
     }
 
     /// Load and joint positions of the robot at the end of the cycle.

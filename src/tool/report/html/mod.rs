@@ -9,6 +9,7 @@ mod grades;
 mod identify;
 mod movements;
 mod page;
+mod placement;
 mod proof;
 mod reliability;
 mod samples;
@@ -23,6 +24,7 @@ pub use diagnose::{Excerpt, Line, Pictures, diagnose_report};
 pub use grades::grades_report;
 pub use identify::{Traces, identify_report};
 pub use page::ReportError;
+pub use placement::place_report;
 pub use simulation::simulate_report;
 
 use tera::Context;

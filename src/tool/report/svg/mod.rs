@@ -2,12 +2,14 @@
 //! class, so one plot works for light, dark and print and single curves can be hidden; text stays
 //! text.
 
+mod cells;
 mod escape;
 mod frame;
 mod plot;
 mod polyline;
 mod scale;
 
+pub use cells::{Cells, Shade};
 pub use escape::escape;
 pub use frame::{Frame, Size};
 pub use plot::{Curve, NEAR, Plot, Rule};

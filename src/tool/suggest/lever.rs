@@ -1,0 +1,76 @@
+//! A place of the text that may be changed, and how.
+
+use super::cell::Places;
+use crate::rapid::text::{Edit, Span};
+use crate::tool::lint::context::Context;
+
+/// A place that may be changed.
+pub(super) struct Lever {
+    /// The place.
+    pub(super) span: Span,
+    /// What may go wrong.
+    pub(super) risk: &'static str,
+    /// Where the robot has to be for what it does.
+    pub(super) places: Places,
+    /// The alternatives.
+    pub(super) offers: Offers,
+}
+
+/// The alternatives at a place.
+pub(super) enum Offers {
+    /// These.
+    List(Vec<Offer>),
+    /// Any shift of a point.
+    Shift(Shift),
+}
+
+/// One change.
+#[derive(Clone)]
+pub(super) struct Offer {
+    /// In words, such as "z50 in place of z20".
+    pub(super) title: String,
+    pub(super) edits: Vec<Edit>,
+}
+
+/// The numbers of a place, and how far they may be shifted.
+pub(super) struct Shift {
+    pub(super) span: Span,
+    /// Their values, mm or degrees.
+    pub(super) values: Vec<f64>,
+    /// Name of the point.
+    pub(super) name: String,
+    pub(super) unit: &'static str,
+    /// First step.
+    pub(super) step: f64,
+    /// Largest shift.
+    pub(super) most: f64,
+}
+
+impl Shift {
+    /// Number of values.
+    pub(super) fn dimension(&self) -> usize {
+        self.values.len()
+    }
+
+    /// The offer of a shift.
+    pub(super) fn offer(&self, shift: &[f64]) -> Offer {
+        let text = |x: f64| {
+            let text = format!("{x:.2}");
+            text.trim_end_matches('0').trim_end_matches('.').to_owned()
+        };
+        let moved = self.values.iter().zip(shift).map(|(x, by)| text(x + by));
+        let by: Vec<String> = shift.iter().map(|by| format!("{by:+.0}")).collect();
+        Offer {
+            title: format!("{} shifted by {} {}", self.name, by.join(", "), self.unit),
+            edits: vec![Edit {
+                span: self.span,
+                text: format!("[{}]", moved.collect::<Vec<_>>().join(",")).into_bytes(),
+            }],
+        }
+    }
+}
+
+/// The text of a span as one word.
+pub(super) fn word(context: &Context<'_>, span: Span) -> String {
+    context.files[span.file.0 as usize].text(span).trim().to_owned()
+}

@@ -1,0 +1,18 @@
+//! Changes that a person has to approve: each one is an edit of the text, simulated in the whole cycle.
+//!
+//! [`levers`] proposes, [`cell`] simulates, [`swept`] compares the space that the arm needs, and
+//! [`suggestions`] ranks. Nothing here is a proof of the process: what a change risks is said with it.
+
+mod cell;
+mod heights;
+mod lever;
+mod levers;
+mod lines;
+mod list;
+mod points;
+mod speeds;
+mod swept;
+mod zones;
+
+pub use cell::Cell;
+pub use list::{Applied, Suggestion, applied, suggestions};
