@@ -14,7 +14,7 @@ use rust_source::tokens::tokens;
 const MIN_TERMS: usize = 40;
 
 /// Pages for users and contributors.
-const PAGES: [&str; 16] = [
+const PAGES: [&str; 17] = [
     "README.md",
     "CONTRIBUTING.md",
     "docs/architecture.md",
@@ -26,6 +26,7 @@ const PAGES: [&str; 16] = [
     "docs/glossary.md",
     "docs/identification.md",
     "docs/lints.md",
+    "docs/placement.md",
     "docs/reasons.md",
     "docs/robots.md",
     "docs/trajectories.md",

@@ -92,7 +92,10 @@ const WINGS: [Wing; 7] = [
             room("config", &["lint"]),
             room(
                 "report",
-                &["rapid", "arm", "retime", "learn", "gap", "examine", "retrofit", "lint", "place", "suggest"],
+                &[
+                    "rapid", "arm", "retime", "learn", "gap", "examine", "retrofit", "lint",
+                    "place", "suggest",
+                ],
             ),
             room("lsp", &["rapid", "arm", "retime", "lint"]),
             room(

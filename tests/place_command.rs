@@ -69,7 +69,9 @@ fn the_written_placement_saves_what_was_promised() {
     let best = &result["best"][0];
     let now = simulate(folder.path(), "out", ROBOT);
     for figure in ["energy_j", "motion_energy_j", "cycle_s"] {
-        assert!((number(&now, &format!("/{figure}")) - best[figure].as_f64().unwrap()).abs() < ROUNDING);
+        assert!(
+            (number(&now, &format!("/{figure}")) - best[figure].as_f64().unwrap()).abs() < ROUNDING
+        );
     }
     let before = number(&simulate(folder.path(), "in", ROBOT), "/energy_j");
     let saving = 100.0 * (1.0 - number(&now, "/energy_j") / before);

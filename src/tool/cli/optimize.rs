@@ -140,7 +140,7 @@ pub(super) struct OptimizeArgs {
     suggest: bool,
 
     /// Make these suggestions (their numbers, or all) before the retrofit, as far as each saves energy
-    /// beside the others. The cycle takes no longer than before them.
+    /// beside the others and the cycle takes no longer.
     #[arg(long, value_name = "N,…|all")]
     apply: Option<String>,
 
@@ -230,7 +230,9 @@ pub(super) fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
 /// Optimises a program that already has streams and replaces these.
 pub(super) fn refresh(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
     if args.undo || args.suggest || args.apply.is_some() {
-        bail!("refresh makes streams anew; use joulepath optimize for --undo, --suggest and --apply");
+        bail!(
+            "refresh makes streams anew; use joulepath optimize for --undo, --suggest and --apply"
+        );
     }
     let mut input = input::read(&args.program.cell.paths)?;
     let streams = streams::remove_streams(&mut input)?;
@@ -246,10 +248,7 @@ fn optimize_job(
     original: &Job,
     applied: Option<&Applied>,
 ) -> anyhow::Result<ExitCode> {
-    let mut settings = settings(args, job)?;
-    if let (Some(applied), Budget::AsBefore) = (applied, settings.budget) {
-        settings.budget = Budget::Takt(applied.cycle_s[0]);
-    }
+    let settings = settings(args, job)?;
     output::refuse_inputs(&[("--report", args.report.as_ref())], job.read_paths())?;
     let quiet = args.program.cell.quiet;
     // The folder of a single task does not include the controller's module list.

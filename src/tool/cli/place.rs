@@ -19,11 +19,13 @@ use crate::tool::retrofit::{OutputFile, OutputKind};
 
 /// Find where work objects, the base or the tool's mounting should be: the same work with less energy.
 #[derive(Debug, Args)]
-#[command(after_help = "Every candidate that is shown was simulated as a whole: its targets are in reach in \
+#[command(
+    after_help = "Every candidate that is shown was simulated as a whole: its targets are in reach in \
     their taught configuration, lines keep their distance from singularities, arm and tool stay out of \
     the keep-outs of joulepath.toml, and the cycle takes no longer than today. Only those keep-outs are \
     known to stand in the way.\n\n\
-    Example: joulepath place fixtures/pick_place --move wobjMc:x=-200..200,y=-200..200,z=-100..100")]
+    Example: joulepath place fixtures/pick_place --move wobjMc:x=-200..200,y=-200..200,z=-100..100"
+)]
 pub(super) struct PlaceArgs {
     #[command(flatten)]
     program: ProgramArgs,
@@ -141,7 +143,8 @@ fn notes(job: &Job, found: &Found) -> Vec<String> {
     }
     if found.accepted.is_empty() {
         notes.push(
-            "no candidate was accepted: allow smaller shifts, other frames, or more time".to_owned(),
+            "no candidate was accepted: allow smaller shifts, other frames, or more time"
+                .to_owned(),
         );
     }
     notes

@@ -41,8 +41,7 @@ fn rest_of_backup(
     out: &Path,
     (job, outputs): (&Job, &[OutputFile]),
 ) -> anyhow::Result<Vec<(PathBuf, Vec<u8>)>> {
-    let known: BTreeSet<PathBuf> =
-        outputs.iter().map(|file| PathBuf::from(&file.path)).collect();
+    let known: BTreeSet<PathBuf> = outputs.iter().map(|file| PathBuf::from(&file.path)).collect();
     let is_stream = |path: &Path| job.streams.modules.iter().any(|one| is_same_file(one, path));
     let mut rest = Vec::new();
     let mut folders = vec![root.to_owned()];
@@ -124,8 +123,7 @@ pub(super) fn write_folder(
 
 /// New files before the files that call them: an interrupted write leaves a working program.
 fn new_first(outputs: &[OutputFile]) -> impl Iterator<Item = &OutputFile> {
-    let of =
-        |new: bool| outputs.iter().filter(move |file| (file.kind == OutputKind::New) == new);
+    let of = |new: bool| outputs.iter().filter(move |file| (file.kind == OutputKind::New) == new);
     of(true).chain(of(false))
 }
 

@@ -36,7 +36,9 @@ pub(super) fn list(args: &ProgramArgs, job: &Job) -> anyhow::Result<ExitCode> {
     };
     common::note(
         args.cell.quiet,
-        &format!("a year has {hours_per_year:.0} h of this cycle (hours_per_year in joulepath.toml)"),
+        &format!(
+            "a year has {hours_per_year:.0} h of this cycle (hours_per_year in joulepath.toml)"
+        ),
     );
     common::print(args.format, || report::json(of), || report::text(of))
 }

@@ -72,7 +72,9 @@ impl<'a> Ways<'a> {
                 let stays =
                     (0..6).find(|axis| bounds.axes[*axis].is_some() && !frame.moves_along(*axis));
                 if stays.is_some() {
-                    return Err(wrong("a tool can only be mounted at another angle: give rz alone"));
+                    return Err(wrong(
+                        "a tool can only be mounted at another angle: give rz alone",
+                    ));
                 }
                 frames.push(frame);
             }
@@ -80,7 +82,10 @@ impl<'a> Ways<'a> {
             if mounted > 0 && mounted < frames.len() {
                 let reason = "a tool turns about the flange, other frames about the world's axes; \
                               give them separate --move options";
-                return Err(PlaceError::Frame { name: bounds.names.join("+"), reason: reason.into() });
+                return Err(PlaceError::Frame {
+                    name: bounds.names.join("+"),
+                    reason: reason.into(),
+                });
             }
             groups.push(Group { bounds: bounds.clone(), frames });
         }

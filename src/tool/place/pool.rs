@@ -123,8 +123,13 @@ impl Ways<'_> {
             refused.slower += 1;
         } else {
             let shifts = self.placed(&point).map(|placed| placed.shifts).unwrap_or_default();
-            let accepted =
-                Placement { point: point.clone(), shifts, cycle_s, energy: cycle.account.total, room };
+            let accepted = Placement {
+                point: point.clone(),
+                shifts,
+                cycle_s,
+                energy: cycle.account.total,
+                room,
+            };
             return Tried { point, figures, accepted: Some(accepted) };
         }
         Tried { point, figures, accepted: None }

@@ -149,7 +149,8 @@ pub fn place(
         .filter(|(today, _)| today.placement.energy.motion_energy_j() > 0.0)
         .ok_or_else(|| {
             PlaceError::Cycle(
-                "the cycle has no movement whose energy is known: joulepath simulate shows why".into(),
+                "the cycle has no movement whose energy is known: joulepath simulate shows why"
+                    .into(),
             )
         })?;
     ways.require_effect(&today)?;
@@ -177,8 +178,7 @@ pub fn place(
     let (count, refusals) = (search.count, search.refusals);
     let accepted: Vec<Placement> =
         search.tried.into_iter().filter_map(|tried| tried.accepted).collect();
-    let robots =
-        if goal.point_estimate { None } else { Robots::new(program.model) };
+    let robots = if goal.point_estimate { None } else { Robots::new(program.model) };
     let mut placed = Vec::new();
     let mut best = Vec::new();
     for placement in shown(&accepted, &today.placement) {

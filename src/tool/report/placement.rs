@@ -36,16 +36,17 @@ impl Placements<'_> {
 
     /// Names of the axes along which frames may move, with their units.
     pub(super) fn axes(&self) -> Vec<String> {
-        self.free().map(|(group, axis)| {
-            let unit = if axis < 3 { "mm" } else { "deg" };
-            let name = if self.bounds.len() > 1 {
-                format!("{} {}", self.bounds[group].names.join("+"), AXES[axis])
-            } else {
-                AXES[axis].to_owned()
-            };
-            format!("{name} {unit}")
-        })
-        .collect()
+        self.free()
+            .map(|(group, axis)| {
+                let unit = if axis < 3 { "mm" } else { "deg" };
+                let name = if self.bounds.len() > 1 {
+                    format!("{} {}", self.bounds[group].names.join("+"), AXES[axis])
+                } else {
+                    AXES[axis].to_owned()
+                };
+                format!("{name} {unit}")
+            })
+            .collect()
     }
 
     /// A placement along those axes, mm and degrees.
@@ -201,7 +202,9 @@ pub fn text(of: Placements<'_>) -> String {
         refusals.slower,
     );
     let Some(first) = best.first() else {
-        out.push_str("no accepted placement uses less energy than today: leave the frames where they are\n");
+        out.push_str(
+            "no accepted placement uses less energy than today: leave the frames where they are\n",
+        );
         return out;
     };
     let [saving, motion] = of.saving_percent(&first.placement);

@@ -158,9 +158,8 @@ pub fn applied_text(of: &Applied) -> String {
         let all: Vec<String> = list.iter().map(|n| (n + 1).to_string()).collect();
         if all.is_empty() { "none".to_owned() } else { all.join(", ") }
     };
-    let percent = |part: fn(&EnergyParts) -> f64| {
-        100.0 * (1.0 - part(&of.energy[1]) / part(&of.energy[0]))
-    };
+    let percent =
+        |part: fn(&EnergyParts) -> f64| 100.0 * (1.0 - part(&of.energy[1]) / part(&of.energy[0]));
     format!(
         "suggestions applied: {}; left, as they save nothing beside those: {}; energy {:.1} J of {:.1} J \
          ({:.2} % less), motions {:.2} % less, cycle {:.3} s of {:.3} s",

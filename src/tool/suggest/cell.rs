@@ -88,9 +88,8 @@ impl<'a> Cell<'a> {
 /// have to stay.
 fn same_work(before: &[Event], after: &[Event], places: Places) -> bool {
     let (a, b) = (work(before), work(after));
-    let same_place = |a: &Joints, b: &Joints| {
-        places == Places::Other || are_close(a, b, SAME_PLACE)
-    };
+    let same_place =
+        |a: &Joints, b: &Joints| places == Places::Other || are_close(a, b, SAME_PLACE);
     a.len() == b.len()
         && a.iter().zip(&b).all(|((a, at), (b, there))| a == b && same_place(at, there))
 }

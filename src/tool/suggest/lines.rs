@@ -13,7 +13,8 @@ pub(super) fn levers(context: &Context<'_>) -> Vec<Lever> {
 }
 
 fn lever(site: &Site<'_>) -> Option<Lever> {
-    let is_line = site.signature.form == MoveForm::Linear && site.name.eq_ignore_ascii_case("MoveL");
+    let is_line =
+        site.signature.form == MoveForm::Linear && site.name.eq_ignore_ascii_case("MoveL");
     if !is_line || !site.is_plain() || site.is_stop() || site.executions.is_empty() {
         return None;
     }

@@ -72,11 +72,8 @@ pub fn suggestions(
     let before = cell.cycle()?;
     let (program, _) = read_program(cell.files, cell.entry)?;
     let files: Vec<SourceFile> = cell.files.iter().map(|source| source.file.clone()).collect();
-    let group = Group {
-        files: (0..files.len()).collect(),
-        entry: cell.entry.to_owned(),
-        system: None,
-    };
+    let group =
+        Group { files: (0..files.len()).collect(), entry: cell.entry.to_owned(), system: None };
     let settings = Settings::default();
     let findings = lint(&Job {
         files: &files,
@@ -86,10 +83,8 @@ pub fn suggestions(
         settings: &settings,
     });
     let again = cell.cycle()?;
-    let cycle =
-        Cycle::new(cell.model, again.simulation, again.account, cell.options.clone());
-    let context =
-        Context::new(&files, Some(cell.model), &program, &group, Some(&cycle), None);
+    let cycle = Cycle::new(cell.model, again.simulation, again.account, cell.options.clone());
+    let context = Context::new(&files, Some(cell.model), &program, &group, Some(&cycle), None);
     let all = levers(&context, &findings.findings);
     let done = AtomicUsize::new(0);
     let swept = Swept::new(cell.model, &before.simulation);
@@ -188,7 +183,9 @@ fn best_offer(cell: Cell<'_>, before: &Simulated, lever: &Lever) -> Option<(Offe
     let best = match &lever.offers {
         Offers::List(offers) => offers
             .iter()
-            .filter_map(|offer| Some((offer.clone(), cell.after(before, &offer.edits, lever.places)?)))
+            .filter_map(|offer| {
+                Some((offer.clone(), cell.after(before, &offer.edits, lever.places)?))
+            })
             .min_by(|(_, a), (_, b)| energy(a).total_cmp(&energy(b))),
         Offers::Shift(shift) => shifted(cell, before, lever, shift),
     };
@@ -217,7 +214,9 @@ fn shifted(
                         continue;
                     }
                     let offer = shift.offer(&next);
-                    let Some(after) = cell.after(before, &offer.edits, lever.places) else { continue };
+                    let Some(after) = cell.after(before, &offer.edits, lever.places) else {
+                        continue;
+                    };
                     let energy = after.account.total.energy_j();
                     if energy < least {
                         (least, at, best) = (energy, next, Some((offer, after)));

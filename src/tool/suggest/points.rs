@@ -50,9 +50,8 @@ fn is_free(context: &Context<'_>, site: &Site<'_>) -> bool {
         !here.any(|next| matches!(next.what, Action::Output(_)))
     };
     // An arc is there for the process.
-    let is_there = !site.executions.is_empty()
-        && site.is_plain()
-        && site.signature.form != MoveForm::Circular;
+    let is_there =
+        !site.executions.is_empty() && site.is_plain() && site.signature.form != MoveForm::Circular;
     is_there && (!site.is_stop() || (!site.is_linear() && site.executions.iter().all(idles)))
 }
 

@@ -57,7 +57,11 @@ impl Swept {
 }
 
 /// Distance of a point from a way, m.
-fn distance(way: &[Point3<f64>], cells: &HashMap<[i32; 3], Vec<usize>>, point: &Point3<f64>) -> f64 {
+fn distance(
+    way: &[Point3<f64>],
+    cells: &HashMap<[i32; 3], Vec<usize>>,
+    point: &Point3<f64>,
+) -> f64 {
     let centre = cell(point);
     let mut nearest = f64::INFINITY;
     for ring in 0..=FARTHEST {
@@ -130,7 +134,8 @@ mod tests {
 
     #[test]
     fn the_distance_from_a_way_is_that_from_its_nearest_stretch() {
-        let way: Vec<Point3<f64>> = (0..40).map(|i| Point3::new(0.03 * f64::from(i), 0.0, 0.0)).collect();
+        let way: Vec<Point3<f64>> =
+            (0..40).map(|i| Point3::new(0.03 * f64::from(i), 0.0, 0.0)).collect();
         let mut cells: HashMap<[i32; 3], Vec<usize>> = HashMap::new();
         for (index, point) in way.iter().enumerate() {
             cells.entry(cell(point)).or_default().push(index);

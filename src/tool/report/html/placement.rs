@@ -28,7 +28,11 @@ struct Row {
 ///
 /// # Errors
 /// A template does not fit its data.
-pub fn place_report(of: Placements<'_>, entry: &str, notes: &[String]) -> Result<String, ReportError> {
+pub fn place_report(
+    of: Placements<'_>,
+    entry: &str,
+    notes: &[String],
+) -> Result<String, ReportError> {
     let Found { today, best, accepted, count, refusals, surrogate_error_percent, .. } = of.found;
     let mut context = Context::new();
     context.insert("robot", of.robot);

@@ -98,7 +98,8 @@ impl Cells<'_> {
             let [x, y] = frame.at(place[0], place[1]);
             // The text is inside of the map.
             let is_right = x > 0.5 * size.width;
-            let (beside, side) = if is_right { (x - 10.0, " class=\"end\"") } else { (x + 10.0, "") };
+            let (beside, side) =
+                if is_right { (x - 10.0, " class=\"end\"") } else { (x + 10.0, "") };
             let _ = write!(
                 content,
                 "<circle class=\"{}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"6\"/><text{side} \

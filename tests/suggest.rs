@@ -1,0 +1,119 @@
+//! `optimize --suggest` and `--apply`: each promise is what `simulate` says after that edit.
+
+#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+mod command;
+
+use std::fs;
+use std::path::Path;
+
+use command::{IRB1600 as ROBOT, number, parsed, refused, run_in};
+use serde_json::Value;
+
+/// Visits two places with small zones, high approaches and a way round. The output needs its stop.
+const PROGRAM: &str = "MODULE M\n\
+    PERS tooldata tGrip:=[TRUE,[[0,0,150],[1,0,0,0]],[2,[10,0,60],[1,0,0,0],0,0,0]];\n\
+    CONST jointtarget jHome:=[[0,-12,14,0,60,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n\
+    CONST robtarget pA:=[[800,-300,300],[0,0,1,0],[-1,0,-1,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n\
+    CONST robtarget pB:=[[800,300,300],[0,0,1,0],[0,-1,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n\
+    CONST robtarget pRound:=[[600,0,800],[0,0,1,0],[0,-1,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n\
+    CONST num nHigh:=200;\n\
+    PROC main()\n\
+    MoveAbsJ jHome,v1000,fine,tGrip;\n\
+    MoveJ Offs(pA,0,0,nHigh),v1000,z10,tGrip;\n\
+    MoveL pA,v300,fine,tGrip;\n\
+    SetDO doGrip,1;\n\
+    WaitTime 0.3;\n\
+    MoveL Offs(pA,0,0,nHigh),v500,z10,tGrip;\n\
+    MoveJ pRound,v1000,z10,tGrip;\n\
+    MoveJ Offs(pB,0,0,nHigh),v1000,z10,tGrip;\n\
+    MoveL pB,v300,fine,tGrip;\n\
+    SetDO doGrip,0;\n\
+    WaitTime 0.3;\n\
+    MoveL Offs(pB,0,0,nHigh),v500,z10,tGrip;\n\
+    MoveAbsJ jHome,v1000,fine,tGrip;\n\
+    ENDPROC\n\
+    ENDMODULE\n";
+/// Rounding of a result in JSON, J and s.
+const ROUNDING: f64 = 1e-6;
+/// Text beside which nothing may change: places of the process, waits and outputs.
+const KEPT: [&str; 4] = ["MoveL pA,v", "SetDO doGrip,1;", "WaitTime 0.3;", "pA:=[[800,-300,300]"];
+
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("in")).unwrap();
+    fs::write(folder.path().join("in/m.mod"), PROGRAM).unwrap();
+    folder
+}
+
+fn json(folder: &Path, args: &[&str]) -> Value {
+    let fixed = ["--robot", ROBOT, "--quiet", "--format", "json"];
+    parsed(&run_in(folder, &[args, &fixed[..]].concat()))
+}
+
+fn with_edits(one: &Value) -> String {
+    let mut text = PROGRAM.to_owned();
+    let mut edits: Vec<&Value> = one["edits"].as_array().unwrap().iter().collect();
+    edits.sort_by_key(|edit| std::cmp::Reverse(edit["start"].as_u64().unwrap()));
+    for edit in edits {
+        let [start, end] = ["start", "end"].map(|key| edit[key].as_u64().unwrap() as usize);
+        text.replace_range(start..end, edit["text"].as_str().unwrap());
+    }
+    text
+}
+
+#[test]
+fn each_suggestion_saves_what_it_promises() {
+    let folder = folder();
+    let result = json(folder.path(), &["optimize", "in", "--suggest"]);
+    let all = result["suggestions"].as_array().unwrap();
+    let changes: Vec<&str> = all.iter().map(|one| one["change"].as_str().unwrap()).collect();
+    for kind in ["height", "in place of z10", "pRound shifted"] {
+        assert!(changes.iter().any(|change| change.contains(kind)), "{kind} is not in {changes:?}");
+    }
+    assert!(all.windows(2).all(|w| number(&w[0], "/saving_j") >= number(&w[1], "/saving_j")));
+    let [energy, cycle] = ["/energy_j", "/cycle_s"].map(|key| number(&result, key));
+    for one in all {
+        let text = with_edits(one);
+        for kept in KEPT {
+            assert!(text.contains(kept), "{} changes {kept}", one["change"]);
+        }
+        fs::write(folder.path().join("changed.mod"), &text).unwrap();
+        let now = json(folder.path(), &["simulate", "changed.mod"]);
+        let saved = energy - number(&now, "/energy_j");
+        assert!((saved - number(one, "/saving_j")).abs() < ROUNDING, "{}", one["change"]);
+        let spared = cycle - number(&now, "/cycle_s");
+        assert!((spared - number(one, "/saving_s")).abs() < ROUNDING && spared > -ROUNDING);
+        assert!(number(one, "/leaves_m") >= 0.0);
+    }
+}
+
+#[test]
+fn applied_suggestions_and_streams_are_one_program() {
+    let folder = folder();
+    let result = json(folder.path(), &["optimize", "in", "--apply", "all", "--out", "out"]);
+    let applied = &result["applied"];
+    assert!(applied["taken"].as_array().unwrap().len() > 1);
+    let before = json(folder.path(), &["simulate", "in"]);
+    assert!((number(applied, "/before/energy_j") - number(&before, "/energy_j")).abs() < ROUNDING);
+    let after = json(folder.path(), &["simulate", "out"]);
+    let [now, once] = [&after, &applied["after"]].map(|of| number(of, "/energy_j"));
+    assert!(now <= once + ROUNDING, "streams add to it: {now} J, {once} J without");
+    assert!(once < 0.95 * number(&before, "/energy_j"));
+    assert!(number(&after, "/cycle_s") <= number(&before, "/cycle_s") + ROUNDING);
+    let text = fs::read_to_string(folder.path().join("out/m.mod")).unwrap();
+    for kept in KEPT {
+        assert!(text.contains(kept), "{kept} is gone");
+    }
+    assert_eq!(fs::read_to_string(folder.path().join("in/m.mod")).unwrap(), PROGRAM);
+}
+
+#[test]
+fn unknown_numbers_have_a_way_out() {
+    let folder = folder();
+    let program = folder.path().join("in");
+    let program = program.to_str().unwrap();
+    for asked in ["0", "999", "1,x", ""] {
+        refused(&["optimize", program, "--robot", ROBOT, "--apply", asked], "--suggest lists them");
+    }
+}
