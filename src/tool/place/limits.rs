@@ -1,6 +1,6 @@
 //! How near a simulated cycle comes to singularities and keep-outs.
 
-use crate::arm::kinematics::{Obstacle, singularity};
+use crate::arm::kinematics::{Capsule, Obstacle, singularity};
 use crate::arm::robot::Model;
 use crate::retime::motion::Simulation;
 use crate::retime::motion::timeline::{Run, What};
@@ -68,7 +68,7 @@ impl Room {
         let Some(body) = run.legs.first().and_then(|leg| around(model, &leg.tool, &freedom)) else {
             return;
         };
-        let reach: f64 = body.capsules(&run.start).iter().map(|part| part.length()).sum();
+        let reach: f64 = body.capsules(&run.start).iter().map(Capsule::length).sum();
         for t in times(0.0, run.duration()) {
             let state = run.at(t);
             let turning: f64 =

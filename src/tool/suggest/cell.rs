@@ -35,7 +35,7 @@ pub(super) enum Places {
     Other,
 }
 
-impl<'a> Cell<'a> {
+impl Cell<'_> {
     /// The program as it is.
     ///
     /// # Errors
