@@ -219,11 +219,14 @@ fn graded(
     let mut found = found.clone();
     let mut trail = Vec::new();
     let mut withdrawn = Vec::new();
+    // Parameters that the refitted model has as well explain the logs, but are not written once more.
+    let mut in_refit: Vec<&str> = Vec::new();
     let refit = &models.refit.applied;
     let missed = shrink(held, [models.nominal, refit, refit]).joints;
     let missed: Vec<f64> = missed.iter().map(|of| of.refit).collect();
     loop {
         let mut decision = decide(search, none, &found, tried, &missed);
+        decision.asserted.retain(|of| !in_refit.contains(&of.effect.id));
         decision.asserted = search.shaped_as_written(&decision.asserted);
         let of =
             |best: &Improved| shrink(held, [models.nominal, &models.refit.applied, &best.applied]);
@@ -257,8 +260,12 @@ fn graded(
             trail.push(entry);
         }
         let less = idle.and_then(|(_, of, joints)| {
+            if of.effect.nature == Nature::Parameters {
+                in_refit.push(of.effect.id);
+                return Some(found.clone());
+            }
             let less = search.without_id(none, &found, (of.effect.id, &joints));
-            if of.effect.nature != Nature::Parameters && joints.is_empty() {
+            if joints.is_empty() {
                 withdrawn.push(of);
             }
             less

@@ -8,6 +8,7 @@ mod excited;
 mod next;
 mod power;
 mod simulated;
+mod since_baseline;
 
 use joulepath::arm::dynamics::{JOINT, RIGID, base_parameters, link_parameters};
 use joulepath::arm::effects::{ALL, Effect, find as effect, with_body};

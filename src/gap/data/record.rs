@@ -123,6 +123,13 @@ impl<'a> Record<'a> {
             .collect()
     }
 
+    /// The same record, if it is of the baseline as one of today.
+    #[must_use]
+    pub(in crate::gap) fn as_now(&self) -> Record<'a> {
+        let kind = if self.kind == RecordKind::Before { RecordKind::Mean } else { self.kind };
+        Record { kind, ..self.clone() }
+    }
+
     /// A periodic motion that nobody has logged, whose torques are the model's. `states` are position,
     /// rate and acceleration \[rad, s\] every `step` \[s\], `noise` the variance of a row of one
     /// repetition by joint \[N²m²\].

@@ -6,12 +6,13 @@ use super::finding::{Estimated, Finding, Remainder, Verdict};
 use super::found::{Candidate, Found, Tried};
 use super::held::{Held, held};
 use super::search::{BEYOND, Search};
+use super::since::{all_as_now, since_baseline};
 use super::trail::{Entry, Gate};
 use crate::arm::effects::{Acts, Effect, Nature, Scope};
 use crate::gap::data::{Record, RecordKind};
 use crate::gap::design::Set;
 use crate::gap::model::Fitted;
-use crate::gap::posterior::Gains;
+use crate::gap::posterior::{Gains, JointSizes};
 use crate::gap::trust::Trust;
 
 /// Ids of effects that a class has at most: more are unknown.
@@ -94,6 +95,11 @@ pub(in crate::gap) fn decide(
         .into_par_iter()
         .map(|k| weigh(search, none, found, k, tried))
         .collect();
+    let all = all_as_now(search);
+    let since: Vec<Option<f64>> = (0..found.effects.len())
+        .into_par_iter()
+        .map(|k| since_baseline(search, none, found, k, all.as_ref()?))
+        .collect();
     let everyday: Vec<f64> = (0..n).map(|j| found.fit.everyday(search.design, j)).collect();
     let left = |fit: &Found, joint: usize| {
         if has_baseline {
@@ -115,6 +121,9 @@ pub(in crate::gap) fn decide(
         let mut passed = ask(Gate::Evidence, id.to_owned(), of.nats, tunables.least_nats);
         let limit = LARGEST_CLASS as f64;
         passed &= ask(Gate::Class, id.to_owned(), of.class.len() as f64, limit);
+        if let Some(nats) = since[number] {
+            passed &= ask(Gate::Since, id.to_owned(), nats, 0.0);
+        }
         let mut places = Vec::new();
         for (k, piece) in of.pieces.iter().enumerate() {
             let joint = piece.fitted.joint;
@@ -181,9 +190,10 @@ pub(in crate::gap) fn decide(
         }
         trail.push(entry);
     }
+    let has_other_friction = fit.fit.sizes.iter().any(JointSizes::has_other_friction);
     let Decided { effects, candidates } = decision;
     let verdict = match (effects.is_empty(), remainder.is_empty()) {
-        (true, true) if has_baseline && !has_parameters => Verdict::NoGap,
+        (true, true) if has_baseline && !has_parameters && !has_other_friction => Verdict::NoGap,
         (true, true) => Verdict::ParametersOnly,
         (true, false) => Verdict::Unknown,
         (false, true) => Verdict::Effect,

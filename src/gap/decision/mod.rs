@@ -7,6 +7,7 @@ mod found;
 mod held;
 mod search;
 mod shape;
+mod since;
 mod starts;
 mod trail;
 mod waves;

@@ -11,7 +11,7 @@ use crate::gap::data::Record;
 use crate::gap::design::{Design, Group, PieceRows, link_pieces, piece_rows};
 use crate::gap::model::Fitted;
 use crate::gap::posterior::{
-    Fit, Gains, Hypothesis, Member, Sizes, Start, fitted, fitted_as_written, halfway, usual,
+    Fit, Gains, Hypothesis, Member, Sizes, Start, TAIL, fitted, fitted_as_written, halfway, usual,
 };
 
 /// Effects at single joints that are looked at in each round, and effects at all their joints.
@@ -30,8 +30,6 @@ const STEPS: [usize; 2] = [6, 24];
 const NO_STEPS: [usize; 2] = [0, 0];
 /// Deviations by which a parameter may be beyond what is possible.
 pub(super) const BEYOND: f64 = 2.0;
-/// Spread of everyday errors beyond the largest usual one \[ln\].
-const TAIL: f64 = 0.2;
 /// Times that shapes are looked for beside what they bring along.
 const ROUNDS: usize = 2;
 /// Sets whose shapes are refined in each round.

@@ -29,6 +29,8 @@ pub enum Gate {
     Unexplained,
     /// Effects that the logs cannot tell from this one, itself included, at most.
     Class,
+    /// Evidence that the effect came after the baseline, and was not there already \[nats\], at least.
+    Since,
 }
 
 /// The answer of a gate.
@@ -56,7 +58,8 @@ impl Gate {
             | Gate::Size
             | Gate::Significance
             | Gate::Form
-            | Gate::Everyday => false,
+            | Gate::Everyday
+            | Gate::Since => false,
             Gate::Bounds | Gate::Noise | Gate::HeldOut | Gate::Unexplained | Gate::Class => true,
         }
     }
@@ -76,6 +79,7 @@ impl Gate {
             Gate::HeldOut => "what is left of the gap in the held-out data",
             Gate::Unexplained => "share of the torque that nothing explains",
             Gate::Class => "effects that the logs cannot tell apart",
+            Gate::Since => "evidence that it came after the baseline, nats",
         }
     }
 

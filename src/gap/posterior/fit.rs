@@ -89,7 +89,7 @@ fn fit_from(
     let spread = design.tunables.amplitude_spread;
     let known = start.amplitudes.into_iter().chain(std::iter::repeat(1.0));
     let amplitudes = known.take(hypothesis.members.len());
-    let amplitudes = amplitudes.map(|value| Size { value, median: 1.0, spread }).collect();
+    let amplitudes = amplitudes.map(|value| Size::about(value, 1.0, spread)).collect();
     let mut fit = Fit {
         hypothesis,
         sizes: start.sizes,

@@ -13,34 +13,57 @@ pub(in crate::gap) struct Size {
     pub median: f64,
     /// Standard deviation of the logarithm.
     pub spread: f64,
+    /// Largest usual value; above it the prior falls as steeply as that of everyday errors.
+    pub most: f64,
 }
 
 impl Size {
     fn new(median: f64, spread: f64) -> Size {
-        Size { value: median, median, spread }
+        Size { value: median, median, spread, most: f64::INFINITY }
+    }
+
+    /// A value beside its prior.
+    pub(super) fn about(value: f64, median: f64, spread: f64) -> Size {
+        Size { value, ..Size::new(median, spread) }
+    }
+
+    fn up_to(self, most: f64) -> Size {
+        Size { most, ..self }
     }
 
     /// One that is known.
     fn fixed(value: f64) -> Size {
-        Size { value, median: value, spread: NONE }
+        Size { value, median: value, spread: NONE, most: f64::INFINITY }
     }
 
     /// Logarithm of the prior, up to a constant.
     #[must_use]
     pub(in crate::gap) fn log_prior(&self) -> f64 {
-        -0.5 * ((self.value / self.median).ln() / self.spread).powi(2)
+        let beyond = self.beyond() / TAIL;
+        -0.5 * ((self.value / self.median).ln() / self.spread).powi(2) - 0.5 * beyond.powi(2)
+    }
+
+    /// Logarithm of its ratio to the largest usual value, 0 below that.
+    fn beyond(&self) -> f64 {
+        (self.value / self.most).ln().max(0.0)
     }
 
     /// A Newton step of the logarithm from the gradient and the expected curvature of the
     /// likelihood.
     pub(super) fn step(&mut self, gradient: f64, curvature: f64) {
+        let tail = if self.beyond() > 0.0 { TAIL.powi(-2) } else { 0.0 };
         let precision = self.spread.powi(-2);
-        let gradient = gradient - (self.value / self.median).ln() * precision;
-        let step = gradient / (curvature + precision);
+        let gradient =
+            gradient - (self.value / self.median).ln() * precision - self.beyond() * tail;
+        let step = gradient / (curvature + precision + tail);
         self.value *= step.clamp(-LONGEST, LONGEST).exp();
     }
 }
 
+/// Standard deviation of the logarithm of a size above the largest usual one.
+pub(in crate::gap) const TAIL: f64 = 0.2;
+/// Largest change of friction from log to log, of its median: EFFECTS.md has 1 to 3 % from day to day.
+const MOST_OF_FRICTION: f64 = 3.0;
 /// Number of the noise of logs that do not repeat, of the torque.
 pub(super) const NOISE: usize = 6;
 /// Number of what no form of a law explains, of the law.
@@ -74,7 +97,10 @@ impl JointSizes {
             }
             let size = match group {
                 Group::Fixed | Group::Form(_) => continue,
-                Group::LogFriction => Size::new(t.log_friction, t.log_friction_spread),
+                Group::LogFriction => {
+                    let usual = Size::new(t.log_friction, t.log_friction_spread);
+                    usual.up_to(MOST_OF_FRICTION * t.log_friction)
+                }
                 Group::Smooth(Variable::Reversal) => Size::new(t.reversal, t.reversal_spread),
                 Group::Day(Variable::Reversal) => Size::new(t.day_reversal, t.day_spread),
                 Group::Day(_) => Size::new(t.day, t.day_spread),
@@ -94,6 +120,13 @@ impl JointSizes {
     #[must_use]
     pub(in crate::gap) fn of(&self, group: Group) -> f64 {
         self.groups.iter().find(|(of, _)| *of == group).map_or(1.0, |(_, size)| size.value)
+    }
+
+    /// Whether friction differs from log to log by more than it usually does.
+    #[must_use]
+    pub(in crate::gap) fn has_other_friction(&self) -> bool {
+        let of = self.groups.iter().find(|(group, _)| *group == Group::LogFriction);
+        of.is_some_and(|(_, size)| size.beyond() > 0.0)
     }
 
     /// Sets the prior of a law's form; `law` is the size of the law.

@@ -15,7 +15,7 @@ pub enum ExciteError {
     },
     /// No motion keeps all limits.
     #[error(
-        "no motion was found that keeps all limits and clear of itself, of planes and boxes: move these, or give a smaller --speed-share or --load"
+        "no motion was found that keeps all limits and clear of itself, of planes and boxes: move these, or allow lower speeds (--speed-share of joulepath excite, [limits] of the robot) or a smaller --load"
     )]
     Nowhere,
     /// No room for a stream test at its pose.

@@ -44,7 +44,10 @@ pub enum LogError {
     #[error("--map names {0} twice: leave one out")]
     MappedTwice(String),
     /// A column map names a column that the file does not have.
-    #[error("--map {channel}={column}: the file has no column '{column}' but {header}")]
+    #[error(
+        "--map {channel}={column}: the file has no column '{column}' but {header}; --map is for all files \
+         of a command, which have to name their columns alike"
+    )]
     NoColumn {
         /// The channel.
         channel: String,

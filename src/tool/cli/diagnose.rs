@@ -209,7 +209,11 @@ fn run_diagnosis(
                 .into(),
         );
     }
-    basis.next = next::experiment(args, &model, &train, &found)?;
+    // The diagnosis stands without an experiment.
+    match next::experiment(args, &model, &train, &found) {
+        Ok(next) => basis.next = next,
+        Err(error) => basis.notes.push(format!("no experiment is written: {error:#}")),
+    }
     let graded = if held.is_empty() { &train } else { &held };
     write(args, &model, graded, &found, &mut basis)?;
     common::notes(args.quiet, &basis.notes[shown..]);

@@ -299,7 +299,10 @@ pub fn text(found: &Diagnosis, basis: &Basis) -> String {
         let _ = writeln!(out, "not asserted: {reason}");
     }
     if let Some(Experiment { why, command, outcomes, .. }) = &basis.next {
-        let _ = writeln!(out, "next: {why}\n  {command}");
+        let _ = writeln!(out, "next: {why}");
+        if !command.is_empty() {
+            let _ = writeln!(out, "  {command}");
+        }
         for Outcome { truth, text, .. } in outcomes {
             let _ = writeln!(out, "  if {truth} is true, {text}");
         }

@@ -19,7 +19,10 @@ const LOG: &str = "joulepath_log.csv";
 
 /// Refuses what `--next` cannot do, before the long search.
 pub(super) fn check(args: &DiagnoseArgs, model: &Model) -> anyhow::Result<()> {
-    if args.next.is_some() {
+    if let Some(out) = &args.next {
+        if out.is_file() {
+            bail!("--next {}: this is a file; name a folder", out.display());
+        }
         common::require_six_joints(model, "the RAPID of --next is written for robots with 6")?;
         // A plane that is wrong is told before the long search.
         cell(&args.experiment, model)?;
@@ -46,7 +49,12 @@ pub(super) fn experiment(
         return Ok(None);
     }
     let Some(out) = &args.next else {
-        let command = format!("{} --next next", again(args, None));
+        // RAPID is written for robots with 6 joints.
+        let command = if model.dof == 6 {
+            format!("{} --next next", again(args, None))
+        } else {
+            String::new()
+        };
         return Ok(Some(Experiment { why: why(rivals), command, ..Experiment::default() }));
     };
     let model = within_logged(model, logs);
