@@ -6,7 +6,7 @@ use super::attribution::{MOST, PARAMETERS, Subsets, brought, regime};
 use super::bins::Quantity;
 use super::heldout::predicted;
 use super::pieces::{Pieces, difference};
-use crate::gap::data::{Record, RecordKind};
+use crate::gap::data::{REST, Record, RecordKind};
 use crate::gap::decision::Place;
 use crate::gap::model::Improved;
 
@@ -85,9 +85,12 @@ fn of_joints(
     for record in records {
         let (with, without) = (predicted(record, &improved.applied), predicted(record, &bare));
         for joint in 0..n {
-            let both = with[joint].iter().zip(&without[joint]);
-            change[joint] += both.map(|(a, b)| (a - b).powi(2)).sum::<f64>();
-            size[joint] += record.measured[joint].iter().map(|x| x * x).sum::<f64>();
+            // The rows that are graded: a joint at rest has any friction.
+            let moves = |row: &usize| record.motion.qd[joint][*row].abs() > REST;
+            for row in (0..with[joint].len()).filter(moves) {
+                change[joint] += (with[joint][row] - without[joint][row]).powi(2);
+                size[joint] += record.measured[joint][row].powi(2);
+            }
         }
     }
     let shares: Vec<f64> =

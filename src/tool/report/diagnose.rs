@@ -268,7 +268,10 @@ pub fn text(found: &Diagnosis, basis: &Basis) -> String {
             let _ = writeln!(out, "  {file}:{line}, {:.0} % of it", 100.0 * of.share);
         }
     }
-    let _ = writeln!(out, "{}", shrink_text(found, basis));
+    // Without torques there is a gap of the channels alone.
+    if !found.budget.is_empty() {
+        let _ = writeln!(out, "{}", shrink_text(found, basis));
+    }
     for (name, unit, [noise, before, after]) in &found.channels {
         let _ = writeln!(
             out,
