@@ -229,10 +229,11 @@ pub(super) fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
 
 /// Optimises a program that already has streams and replaces these.
 pub(super) fn refresh(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
-    if args.undo || args.suggest || args.apply.is_some() {
-        bail!(
-            "refresh makes streams anew; use joulepath optimize for --undo, --suggest and --apply"
-        );
+    if args.undo {
+        bail!("refresh cannot undo changes; use joulepath optimize --undo");
+    }
+    if args.suggest || args.apply.is_some() {
+        bail!("refresh changes streams alone; use joulepath optimize --suggest, or --apply");
     }
     let mut input = input::read(&args.program.cell.paths)?;
     let streams = streams::remove_streams(&mut input)?;

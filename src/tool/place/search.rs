@@ -3,6 +3,8 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use rayon::prelude::*;
+
 use super::bounds::Bounds;
 use super::candidate::{Placed, Program, Ways};
 use super::error::PlaceError;
@@ -16,6 +18,8 @@ use crate::tool::retrofit::{Simulated, read_program};
 
 /// Rounds of the surrogate.
 const ROUNDS: u32 = 6;
+/// Candidates of which each round looks at mean and deviation.
+const LOOKED_AT: usize = 1000;
 /// New candidates around the best one in each round.
 const NEAR: u32 = 200;
 /// How far those are from the best one in the first round, of the range.
@@ -237,14 +241,17 @@ impl Search<'_> {
         }
         let Some([energy, time]) = self.surrogates() else { return };
         let limit = self.today.placement.cycle_s;
-        let worth: Vec<f64> = self
-            .rest
-            .iter()
-            .map(|point| {
-                let [[j, j_sd], [s, s_sd]] = [energy.at(point), time.at(point)];
-                if s - s_sd > limit { f64::INFINITY } else { j - j_sd }
-            })
-            .collect();
+        let means: Vec<f64> = self.rest.par_iter().map(|point| energy.mean_at(point)).collect();
+        let mut order: Vec<usize> = (0..means.len()).collect();
+        order.sort_by(|a, b| means[*a].total_cmp(&means[*b]));
+        let mut worth = vec![f64::INFINITY; means.len()];
+        // Deviations take time: of the least means only.
+        for index in order.into_iter().take(LOOKED_AT) {
+            let [[j, j_sd], [s, s_sd]] = [energy.at(&self.rest[index]), time.at(&self.rest[index])];
+            if s - s_sd <= limit {
+                worth[index] = j - j_sd;
+            }
+        }
         let chosen = self.take(&worth, self.simulations.per_round);
         self.simulate(chosen);
     }
