@@ -87,7 +87,7 @@ const WINGS: [Wing; 7] = [
             room("retrofit", &["rapid", "arm", "retime", "emit"]),
             room("generate", &["rapid", "arm", "retime", "emit", "retrofit"]),
             room("lint", &["rapid", "arm", "path", "motion", "energy"]),
-            room("place", &["rapid", "arm", "retime", "retrofit"]),
+            room("place", &["rapid", "arm", "retime", "retrofit", "lint"]),
             room("suggest", &["rapid", "arm", "retime", "retrofit", "lint"]),
             room("config", &["lint"]),
             room(

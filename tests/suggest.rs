@@ -88,6 +88,22 @@ fn each_suggestion_saves_what_it_promises() {
     }
 }
 
+/// A height that is also that of a place where an output is switched stays.
+#[test]
+fn places_of_outputs_stay() {
+    let has_height = |text: &str| {
+        let folder = folder();
+        fs::write(folder.path().join("in/m.mod"), text).unwrap();
+        let result = json(folder.path(), &["optimize", "in", "--suggest", "--point-estimate"]);
+        let all = result["suggestions"].as_array().unwrap();
+        all.iter().any(|one| one["change"].as_str().unwrap().contains("height"))
+    };
+    assert!(has_height(PROGRAM));
+    let passed = "MoveJ Offs(pB,0,0,nHigh),v1000,z10,tGrip;\n";
+    let stopped = "MoveJ Offs(pB,0,0,nHigh),v1000,fine,tGrip;\nSetDO doLook,1;\n";
+    assert!(!has_height(&PROGRAM.replace(passed, stopped)));
+}
+
 #[test]
 fn applied_suggestions_and_streams_are_one_program() {
     let folder = folder();

@@ -102,6 +102,16 @@ pub struct Predefined {
     pub value: Literal,
 }
 
+/// Names of the predefined zones and their `pzone_tcp`, mm, from the smallest one.
+pub fn zones() -> impl Iterator<Item = (&'static str, f64)> {
+    ZONES.iter().filter(|(name, _)| *name != "fine").map(|(name, sizes)| (*name, sizes[0]))
+}
+
+/// The predefined speeds `vN`, mm/s, from the slowest one.
+pub fn speeds() -> impl Iterator<Item = u32> {
+    SPEEDS.into_iter()
+}
+
 /// The cause of an error number; `key` in lower case.
 pub fn error(key: &str) -> Option<Cause> {
     error_entry(key).map(|(_, cause)| cause)

@@ -21,7 +21,9 @@ mod signals;
 mod tests;
 mod types;
 
-pub use data::{Cause, Literal, Predefined, error, is_controller_specific, predefined};
+pub use data::{
+    Cause, Literal, Predefined, error, is_controller_specific, predefined, speeds, zones,
+};
 pub use function::{Function, Source};
 #[cfg(test)]
 pub(in crate::rapid) use functions::FUNCTIONS;

@@ -2,7 +2,9 @@
 
 use crate::rapid::builtins::ArgumentPlace;
 
-use super::hir::{Arg, ArgKind, Block, Callee, Expr, ExprKind, Ident, Routine, Stmt, StmtKind};
+use super::hir::{
+    Arg, ArgKind, Block, Callee, Expr, ExprKind, Ident, Routine, Stmt, StmtKind, UnaryOp,
+};
 
 impl Routine {
     /// The statements of the body and of every handler, with those of inner blocks.
@@ -132,6 +134,24 @@ impl Expr {
             ExprKind::Aggregate(items) => items.iter().collect(),
             ExprKind::Binary(_, left, right) => vec![left, right],
             _ => Vec::new(),
+        }
+    }
+
+    /// The number that stands in the text, with its sign.
+    pub fn literal_number(&self) -> Option<f64> {
+        match &self.kind {
+            ExprKind::Num(x) => Some(*x),
+            ExprKind::Unary(UnaryOp::Minus, x) => x.literal_number().map(|x| -x),
+            ExprKind::Unary(UnaryOp::Plus, x) => x.literal_number(),
+            _ => None,
+        }
+    }
+
+    /// The numbers of an aggregate `[a, b, …]` that stand in the text.
+    pub fn literal_numbers(&self) -> Option<Vec<f64>> {
+        match &self.kind {
+            ExprKind::Aggregate(items) => items.iter().map(Expr::literal_number).collect(),
+            _ => None,
         }
     }
 

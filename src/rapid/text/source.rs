@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use super::edit::{Edit, EditError, apply};
 use super::encoding::{self, Charset};
 use super::lines::{LineIndex, Position};
 use super::span::{FileId, Span};
@@ -50,6 +51,16 @@ impl SourceFile {
             Some(kind) => Cow::Owned(kind.write(bytes)),
             None => Cow::Borrowed(bytes),
         }
+    }
+
+    /// The file with edits of its bytes.
+    ///
+    /// # Errors
+    /// Edits overlap, or one of them is outside the file.
+    pub fn edited(&self, edits: &[Edit]) -> Result<SourceFile, EditError> {
+        let bytes = apply(&self.bytes, edits)?;
+        let lines = LineIndex::with_charset(&bytes, self.charset);
+        Ok(SourceFile { bytes, lines, path: self.path.clone(), ..*self })
     }
 
     /// Line and column of a byte.

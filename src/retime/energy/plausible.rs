@@ -101,6 +101,17 @@ impl Robots {
         moments.changes(model, &self.changes)
     }
 
+    /// Energy of a cycle for each robot; `total` is that of the model.
+    pub fn energies(
+        &self,
+        model: &Model,
+        simulation: &Simulation,
+        total: EnergyParts,
+    ) -> Vec<EnergyParts> {
+        let changes = self.changes(model, &moments(model, simulation));
+        changes.into_iter().map(|change| total + change).collect()
+    }
+
     /// Contributions to the variance of a result, largest first. Groups of a calibrated robot are
     /// correlated, so each group explains a part of the variance that the groups before it leave.
     pub fn contributions(&self, values: &[f64]) -> Vec<Contribution> {
@@ -200,15 +211,13 @@ pub fn plausibility(
     account: &Account,
 ) -> Option<Plausibility> {
     let robots = Robots::new(model)?;
-    let changes = robots.changes(model, &moments(model, simulation));
-    let of = |part: &dyn Fn(&EnergyParts) -> f64| -> Vec<f64> {
-        changes.iter().map(|change| part(&account.total) + part(change)).collect()
-    };
-    let energy = of(&EnergyParts::energy_j);
+    let energies = robots.energies(model, simulation, account.total);
+    let of = |part: fn(&EnergyParts) -> f64| -> Vec<f64> { energies.iter().map(part).collect() };
+    let energy = of(EnergyParts::energy_j);
     let torques = peaks(model, robots.drawn(), simulation);
     Some(Plausibility {
         energy_j: Interval::from_values(&energy),
-        motion_energy_j: Interval::from_values(&of(&EnergyParts::motion_energy_j)),
+        motion_energy_j: Interval::from_values(&of(EnergyParts::motion_energy_j)),
         torque_nm: torques.iter().map(|largest| Interval::from_values(largest)).collect(),
         contributions: robots.contributions(&energy),
     })

@@ -21,7 +21,7 @@ use crate::arm::robot::{self, Model};
 use crate::rapid::text::{self, FileId, SourceFile, is_encoded_module};
 use crate::retime::motion::{Options, Simulation};
 use crate::tool::config::{self, Config};
-use crate::tool::retrofit::Source;
+use crate::tool::retrofit::{Cell, Source};
 
 /// Message for robots with another number of joints.
 pub(super) const RUN_SIX_JOINTS: &str =
@@ -127,6 +127,11 @@ impl Job {
     /// Whether existing streams of the program are replaced.
     pub(super) fn is_refreshed(&self) -> bool {
         !self.streams.modules.is_empty()
+    }
+
+    /// The program and its robot.
+    pub(super) fn cell(&self) -> Cell<'_> {
+        Cell { files: &self.files, entry: &self.entry, model: &self.model, options: &self.options }
     }
 
     /// The files that were read: modules, the files of the robot and of the configuration.

@@ -12,7 +12,7 @@ use super::keep_outs::keep_outs;
 use super::output;
 use super::program_output::{refuse_nested_output, whole_backup, write_folder};
 use crate::arm::robot::{Model, Use, ready};
-use crate::tool::place::{Bounds, Found, Goal, Placed, Program, place};
+use crate::tool::place::{Bounds, Found, Goal, Placed, place};
 use crate::tool::report::html::place_report;
 use crate::tool::report::placement::{self, Placements};
 use crate::tool::retrofit::{OutputFile, OutputKind};
@@ -82,16 +82,9 @@ pub(super) fn run(args: &PlaceArgs) -> anyhow::Result<ExitCode> {
         refuse_nested_output(folder, paths)?;
     }
     let obstacles = keep_outs(&job.config)?;
-    let program = Program {
-        files: &job.files,
-        entry: &job.entry,
-        model: &job.model,
-        options: &job.options,
-        obstacles: &obstacles,
-    };
     let goal = Goal { candidates: args.candidates, point_estimate: args.program.point_estimate };
     let bar = common::progress(quiet, Some(u64::from(args.candidates)));
-    let found = place(program, &bounds, goal, &|done, all| {
+    let found = place(job.cell(), &obstacles, &bounds, goal, &|done, all| {
         bar.set_length(all as u64);
         bar.set_position(done as u64);
     });
@@ -107,9 +100,10 @@ pub(super) fn run(args: &PlaceArgs) -> anyhow::Result<ExitCode> {
     let page = args.report.as_ref().map(|_| place_report(of, &job.entry, &notes)).transpose()?;
     let mut written = Vec::new();
     if let Some(folder) = &args.out {
-        match found.placed(chosen - 1) {
-            Some(placed) => {
-                written.extend(write_folder(folder, &job, &outputs(&job, placed)?, backup)?);
+        match found.best.get(chosen - 1) {
+            Some(best) => {
+                let outputs = outputs(&job, &best.placed)?;
+                written.extend(write_folder(folder, &job, &outputs, backup)?);
             }
             None => common::note(quiet, "nothing is written: no placement saves energy"),
         }

@@ -1,14 +1,12 @@
 //! Applies fixes, and withdraws those that do not save energy.
 
 use super::engine::{Examined, Report, cycles, examine, lint};
-use super::evaluate::{Cycle, POSITION_TOLERANCE};
+use super::evaluate::Cycle;
 use super::job::Job;
+use super::process::{Kept, same_process};
 use super::rule::{Applicability, Family, Finding};
-use super::trace::{self, Action};
 use crate::rapid::syntax;
-use crate::rapid::text::{Edit, FileId, SourceFile, apply};
-use crate::retime::motion::timeline::What;
-use crate::retime::path::joint_path::{Joints, are_close};
+use crate::rapid::text::{Edit, FileId, SourceFile};
 
 const MAX_ROUNDS: usize = 40;
 /// Rounding of an energy, J.
@@ -117,13 +115,11 @@ fn attempt(
         if edits.is_empty() {
             continue;
         }
-        let bytes = apply(&file.bytes, &edits).ok()?;
-        let errors = |bytes: &[u8]| syntax::parse(bytes).errors.len();
-        if errors(&bytes) > errors(&file.bytes) {
+        changed[index] = file.edited(&edits).ok()?;
+        let errors = |file: &SourceFile| syntax::parse(&file.bytes).errors.len();
+        if errors(&changed[index]) > errors(file) {
             return None;
         }
-        let stored = file.stored(&bytes).into_owned();
-        changed[index] = SourceFile::new(file.id, file.path.clone(), stored);
     }
     let comments = findings.iter().all(|finding| finding.rule.family == Family::Comments);
     let after = cycles(&with_files(job, &changed));
@@ -132,7 +128,9 @@ fn attempt(
         match (before, after) {
             (Some(before), Some(after)) => {
                 let spared = before.account.total.energy_j() - after.account.total.energy_j();
-                if spared < -ROUNDING || !same_process(before, after) {
+                if spared < -ROUNDING
+                    || !same_process(&before.simulation, &after.simulation, Kept::Waits)
+                {
                     return None;
                 }
                 better |= spared > ROUNDING;
@@ -142,41 +140,4 @@ fn attempt(
         }
     }
     (better && before.len() == after.len()).then_some((changed, after))
-}
-
-/// Whether both cycles have the same waits and outputs in the same order, equal poses at waits and
-/// end, and no additional problem.
-fn same_process(before: &Cycle, after: &Cycle) -> bool {
-    let actions = |cycle: &Cycle| -> Vec<String> {
-        let trace = trace::of_events(&cycle.simulation.events);
-        let actions = trace.iter().filter_map(|done| match &done.what {
-            Action::Output(output) => Some(format!("{} {}", output.signal, output.value)),
-            Action::Wait(wait, basis) => {
-                let length = wait.duration.unwrap_or_default();
-                Some(format!("{} {:?} {basis:?} {length}", wait.instruction, wait.signal))
-            }
-            Action::Left(_) => Some("elsewhere".to_owned()),
-            Action::Move(_) => None,
-        });
-        actions.collect()
-    };
-    let places = |cycle: &Cycle| -> Vec<Joints> {
-        let events = &cycle.simulation.events;
-        let waits = events.iter().filter_map(|event| match &event.what {
-            What::Wait(wait) => Some(wait.q),
-            _ => None,
-        });
-        let last = events.iter().rev().find_map(trace::run).map(|run| run.end);
-        waits.chain(last).collect()
-    };
-    let problems = |cycle: &Cycle| {
-        let runs = cycle.simulation.events.iter().filter_map(trace::run);
-        runs.filter(|run| run.problem.is_some()).count()
-    };
-    let (a, b) = (places(before), places(after));
-    let near = |(a, b): (&Joints, &Joints)| are_close(a, b, POSITION_TOLERANCE);
-    actions(before) == actions(after)
-        && a.len() == b.len()
-        && a.iter().zip(&b).all(near)
-        && problems(after) <= problems(before)
 }

@@ -14,6 +14,7 @@ pub mod fix;
 pub mod flow;
 pub mod group;
 pub mod job;
+pub mod process;
 mod register;
 pub mod rule;
 mod rules;

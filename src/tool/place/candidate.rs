@@ -7,25 +7,9 @@ use super::error::PlaceError;
 use super::frame::{Frame, about};
 use crate::arm::kinematics::{KeepOut, Obstacle, Plane};
 use crate::arm::robot::Model;
-use crate::rapid::ir::program::{self, RoutineId};
-use crate::rapid::text::{Edit, LineIndex, apply};
-use crate::retime::motion::Options;
-use crate::tool::retrofit::{RetrofitError, Source, read_program};
-
-/// A program and its cell.
-#[derive(Clone, Copy)]
-pub struct Program<'a> {
-    /// Its files, by id.
-    pub files: &'a [Source],
-    /// The routine that starts it.
-    pub entry: &'a str,
-    /// The robot.
-    pub model: &'a Model,
-    /// Options of the simulation.
-    pub options: &'a Options,
-    /// Keep-outs, in the base frame of the robot as it stands.
-    pub obstacles: &'a [Obstacle],
-}
+use crate::rapid::ir::program::Program;
+use crate::rapid::text::Edit;
+use crate::tool::retrofit::{Cell, Source};
 
 /// Frames that move together.
 struct Group {
@@ -35,7 +19,9 @@ struct Group {
 
 /// The ways in which a program may be placed.
 pub(super) struct Ways<'a> {
-    pub(super) program: Program<'a>,
+    pub(super) cell: Cell<'a>,
+    /// Keep-outs, in the base frame of the robot as it stands.
+    obstacles: &'a [Obstacle],
     groups: Vec<Group>,
 }
 
@@ -52,8 +38,8 @@ pub struct Placed {
 
 impl<'a> Ways<'a> {
     pub(super) fn new(
-        program: Program<'a>,
-        read: &program::Program,
+        (cell, obstacles): (Cell<'a>, &'a [Obstacle]),
+        program: &Program,
         all: &[Bounds],
     ) -> Result<Ways<'a>, PlaceError> {
         let mut groups: Vec<Group> = Vec::new();
@@ -68,7 +54,7 @@ impl<'a> Ways<'a> {
                     return Err(wrong("it is named twice; name each frame once"));
                 }
                 names.push(key);
-                let frame = Frame::find(read, name)?;
+                let frame = Frame::find(program, name)?;
                 let stays =
                     (0..6).find(|axis| bounds.axes[*axis].is_some() && !frame.moves_along(*axis));
                 if stays.is_some() {
@@ -89,7 +75,7 @@ impl<'a> Ways<'a> {
             }
             groups.push(Group { bounds: bounds.clone(), frames });
         }
-        Ok(Ways { program, groups })
+        Ok(Ways { cell, obstacles, groups })
     }
 
     /// Number of axes along which frames may move.
@@ -113,15 +99,15 @@ impl<'a> Ways<'a> {
     pub(super) fn today(&self) -> Placed {
         Placed {
             shifts: vec![[0.0; 6]; self.groups.len()],
-            files: self.program.files.to_vec(),
-            model: self.program.model.clone(),
-            obstacles: self.program.obstacles.to_vec(),
+            files: self.cell.files.to_vec(),
+            model: self.cell.model.clone(),
+            obstacles: self.obstacles.to_vec(),
         }
     }
 
     fn shifted(&self, shifts: Vec<[f64; 6]>) -> Result<Placed, PlaceError> {
         let mut placed = Placed { shifts, ..self.today() };
-        let base = self.program.model.kinematics.base;
+        let base = self.cell.model.kinematics.base;
         let mut edits: Vec<Edit> = Vec::new();
         for (group, shift) in self.groups.iter().zip(&placed.shifts) {
             let Some(first) = group.frames.first() else { continue };
@@ -133,24 +119,16 @@ impl<'a> Ways<'a> {
                 placed.obstacles = placed.obstacles.iter().map(|part| moved(part, &seen)).collect();
             }
         }
-        for (index, source) in placed.files.iter_mut().enumerate() {
-            let of = |edit: &&Edit| edit.span.file.0 as usize == index;
-            let own: Vec<Edit> = edits.iter().filter(of).cloned().collect();
-            if !own.is_empty() {
-                let bytes = apply(&source.file.bytes, &own);
-                let bytes = bytes.map_err(|error| PlaceError::Cycle(error.to_string()))?;
-                source.file.lines = LineIndex::with_charset(&bytes, source.file.charset);
-                source.file.bytes = bytes;
-            }
-        }
+        let files = self.cell.edited(edits);
+        placed.files = files.map_err(|error| PlaceError::Cycle(error.to_string()))?;
         Ok(placed)
     }
 }
 
 impl Placed {
-    /// The program of the changed text, and its entry.
-    pub(super) fn read(&self, entry: &str) -> Result<(program::Program, RoutineId), RetrofitError> {
-        read_program(&self.files, entry)
+    /// The program of the changed text with the robot where it stands.
+    pub(super) fn cell<'p>(&'p self, of: Cell<'p>) -> Cell<'p> {
+        Cell { files: &self.files, model: &self.model, ..of }
     }
 }
 

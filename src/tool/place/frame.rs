@@ -6,7 +6,8 @@ use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 
 use super::error::PlaceError;
 use crate::arm::robot::nearest;
-use crate::rapid::ir::hir::{Data, Expr, ExprKind, UnaryOp};
+use crate::rapid::ir::hir::{Data, Expr, ExprKind};
+use crate::rapid::ir::number::number;
 use crate::rapid::ir::program::{DataId, Program};
 use crate::rapid::text::{Edit, Span};
 
@@ -203,17 +204,7 @@ fn flag(value: &Expr) -> Result<bool, &'static str> {
 }
 
 fn numbers<const N: usize>(value: &Expr) -> Result<[f64; N], &'static str> {
-    let all: Option<Vec<f64>> = list(value)?.iter().map(number).collect();
-    all.and_then(|all| all.try_into().ok()).ok_or(NO_LITERAL)
-}
-
-fn number(value: &Expr) -> Option<f64> {
-    match &value.kind {
-        ExprKind::Num(x) => Some(*x),
-        ExprKind::Unary(UnaryOp::Minus, x) => number(x).map(|x| -x),
-        ExprKind::Unary(UnaryOp::Plus, x) => number(x),
-        _ => None,
-    }
+    value.literal_numbers().and_then(|all| all.try_into().ok()).ok_or(NO_LITERAL)
 }
 
 fn rotation(value: &Expr) -> Result<UnitQuaternion<f64>, &'static str> {
@@ -236,21 +227,14 @@ fn pose_text(pose: &Isometry3<f64>) -> String {
 
 /// A vector in mm.
 fn vector_text(mm: &Vector3<f64>) -> String {
-    format!("[{},{},{}]", decimal(mm.x, 3), decimal(mm.y, 3), decimal(mm.z, 3))
+    format!("[{},{},{}]", number(mm.x, 3), number(mm.y, 3), number(mm.z, 3))
 }
 
 fn rotation_text(turn: &UnitQuaternion<f64>) -> String {
     // Of the two quaternions of a rotation the one with a positive first component.
     let sign = if turn.w < 0.0 { -1.0 } else { 1.0 };
-    let parts = [turn.w, turn.i, turn.j, turn.k].map(|part| decimal(sign * part, 9));
+    let parts = [turn.w, turn.i, turn.j, turn.k].map(|part| number(sign * part, 9));
     format!("[{}]", parts.join(","))
-}
-
-/// A decimal number without trailing zeros, and without a negative zero.
-fn decimal(x: f64, decimals: usize) -> String {
-    let text = format!("{x:.decimals$}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
 #[cfg(test)]
@@ -265,12 +249,5 @@ mod tests {
         assert!((moved.coords - Vector3::new(1.1, 2.0, 0.5)).norm() < 1e-12);
         let beside = shift * nalgebra::Point3::new(2.0, 2.0, 0.5);
         assert!((beside.coords - Vector3::new(1.1, 3.0, 0.5)).norm() < 1e-12);
-    }
-
-    #[test]
-    fn numbers_are_written_without_noise() {
-        assert_eq!(decimal(-0.000_01, 3), "0");
-        assert_eq!(decimal(12.340, 3), "12.34");
-        assert_eq!(decimal(100.0, 3), "100");
     }
 }

@@ -96,3 +96,25 @@ fn times(start: f64, duration: f64) -> impl Iterator<Item = f64> {
     let count = (duration / STEP_S).ceil().max(1.0) as usize;
     (0..=count).map(move |i| start + duration * i as f64 / count as f64)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_keep_the_usual_distance_or_that_of_today() {
+        let far = Room { wrist: 0.5, elbow: 0.5, shoulder_m: 0.4, clearance_m: 0.1 };
+        assert!(far.is_regular(&far) && far.is_clear(&far));
+        for near in [
+            Room { wrist: 0.05, ..far },
+            Room { elbow: 0.05, ..far },
+            Room { shoulder_m: 0.03, ..far },
+        ] {
+            assert!(!near.is_regular(&far), "{near:?}");
+            assert!(near.is_regular(&near), "as today: {near:?}");
+            assert!(far.is_regular(&near));
+        }
+        let inside = Room { clearance_m: -0.02, ..far };
+        assert!(!inside.is_clear(&far) && inside.is_clear(&inside));
+    }
+}

@@ -15,7 +15,7 @@ mod search;
 mod surrogate;
 
 pub use bounds::{AXES, Bounds};
-pub use candidate::{Placed, Program};
+pub use candidate::Placed;
 pub use error::PlaceError;
 pub use limits::Room;
 pub use placement::{Placement, Refusals};

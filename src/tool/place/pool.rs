@@ -2,13 +2,13 @@
 
 use rayon::prelude::*;
 
-use super::candidate::Ways;
+use super::candidate::{Placed, Ways};
 use super::limits::Room;
 use super::placement::{Placement, Refusals};
 use crate::arm::kinematics::radical_inverse;
-use crate::arm::robot::Model;
 use crate::retime::motion::unreached;
-use crate::tool::retrofit::Simulated;
+use crate::tool::lint::process::{Kept, same_process};
+use crate::tool::retrofit::{Simulated, read_program};
 
 /// Bases of the sequences by axis (J. H. Halton, 1960); more axes than these are not searched.
 pub(super) const BASES: [u32; 12] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37];
@@ -32,28 +32,19 @@ pub(super) fn even(n: u32, dimension: usize) -> Vec<f64> {
 /// What a candidate is compared with.
 pub(super) struct Today {
     pub(super) placement: Placement,
-    /// Movements that cannot be simulated today either.
+    pub(super) cycle: Simulated,
+    /// Movements out of reach today.
     unreached: usize,
-    problems: usize,
 }
 
 impl Ways<'_> {
     /// The program as it is.
-    pub(super) fn look(&self) -> Option<(Today, Simulated)> {
+    pub(super) fn look(&self) -> Option<Today> {
         let placed = self.today();
-        let (read, entry) = placed.read(self.program.entry).ok()?;
-        let unreached = unreached(&read, entry, &placed.model, self.program.options);
-        let cycle = Simulated::new(&read, entry, &placed.model, self.program.options);
-        let room = Room::of(&placed.model, &cycle.simulation, &placed.obstacles);
-        let placement = Placement {
-            point: Vec::new(),
-            shifts: placed.shifts,
-            cycle_s: cycle.simulation.cycle_s,
-            energy: cycle.account.total,
-            room,
-        };
-        let problems = cycle.problems();
-        Some((Today { placement, unreached, problems }, cycle))
+        let cycle = self.cell.simulated().ok()?;
+        let unreached = self.unreached(&placed)?;
+        let placement = placement(Vec::new(), placed, &cycle);
+        Some(Today { placement, cycle, unreached })
     }
 
     /// The points whose targets are in reach, and the others.
@@ -63,13 +54,11 @@ impl Ways<'_> {
         today: &Today,
         tick: &(dyn Fn() + Sync),
     ) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
-        let is_reached = |point: &Vec<f64>| {
+        points.into_par_iter().partition(|point| {
             tick();
-            let Ok(placed) = self.placed(point) else { return false };
-            let Ok((read, entry)) = placed.read(self.program.entry) else { return false };
-            unreached(&read, entry, &placed.model, self.program.options) <= today.unreached
-        };
-        points.into_par_iter().partition(is_reached)
+            let unreached = self.placed(point).ok().and_then(|placed| self.unreached(&placed));
+            unreached.is_some_and(|count| count <= today.unreached)
+        })
     }
 
     /// Simulates the whole cycle at points, and judges it.
@@ -93,45 +82,52 @@ impl Ways<'_> {
         tried
     }
 
-    /// The cycle at a point.
-    pub(super) fn cycle_at(&self, point: &[f64]) -> Option<(Model, Simulated, Room)> {
+    /// The program at a point, and its cycle.
+    pub(super) fn cycle_at(&self, point: &[f64]) -> Option<(Placed, Simulated)> {
         let placed = self.placed(point).ok()?;
-        let (read, entry) = placed.read(self.program.entry).ok()?;
-        let cycle = Simulated::new(&read, entry, &placed.model, self.program.options);
-        let room = Room::of(&placed.model, &cycle.simulation, &placed.obstacles);
-        Some((placed.model, cycle, room))
+        let cycle = placed.cell(self.cell).simulated().ok()?;
+        Some((placed, cycle))
+    }
+
+    fn unreached(&self, placed: &Placed) -> Option<usize> {
+        let cell = placed.cell(self.cell);
+        let (program, entry) = read_program(cell.files, cell.entry).ok()?;
+        Some(unreached(&program, entry, cell.model, cell.options))
     }
 
     fn judged(&self, point: Vec<f64>, today: &Today, refused: &mut Refusals) -> Tried {
-        let nothing = |point: Vec<f64>| Tried { point, figures: None, accepted: None };
-        let Some((_, cycle, room)) = self.cycle_at(&point) else {
-            refused.reach += 1;
-            return nothing(point);
+        let is_sound = |(_, cycle): &(Placed, Simulated)| {
+            same_process(&today.cycle.simulation, &cycle.simulation, Kept::Order)
         };
-        if cycle.problems() > today.problems {
+        let Some((placed, cycle)) = self.cycle_at(&point).filter(is_sound) else {
             refused.reach += 1;
-            return nothing(point);
-        }
-        let cycle_s = cycle.simulation.cycle_s;
-        let figures = Some([cycle.account.total.energy_j(), cycle_s]);
+            return Tried { point, figures: None, accepted: None };
+        };
+        let placement = placement(point.clone(), placed, &cycle);
+        let figures = Some([placement.energy.energy_j(), placement.cycle_s]);
         let was = &today.placement;
-        if !room.is_regular(&was.room) {
+        let accepted = if !placement.room.is_regular(&was.room) {
             refused.singular += 1;
-        } else if !room.is_clear(&was.room) {
+            None
+        } else if !placement.room.is_clear(&was.room) {
             refused.keep_out += 1;
-        } else if cycle_s > was.cycle_s + TIME_TOLERANCE {
+            None
+        } else if placement.cycle_s > was.cycle_s + TIME_TOLERANCE {
             refused.slower += 1;
+            None
         } else {
-            let shifts = self.placed(&point).map(|placed| placed.shifts).unwrap_or_default();
-            let accepted = Placement {
-                point: point.clone(),
-                shifts,
-                cycle_s,
-                energy: cycle.account.total,
-                room,
-            };
-            return Tried { point, figures, accepted: Some(accepted) };
-        }
-        Tried { point, figures, accepted: None }
+            Some(placement)
+        };
+        Tried { point, figures, accepted }
+    }
+}
+
+fn placement(point: Vec<f64>, placed: Placed, cycle: &Simulated) -> Placement {
+    Placement {
+        point,
+        room: Room::of(&placed.model, &cycle.simulation, &placed.obstacles),
+        shifts: placed.shifts,
+        cycle_s: cycle.simulation.cycle_s,
+        energy: cycle.account.total,
     }
 }

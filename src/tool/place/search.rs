@@ -6,15 +6,16 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use super::bounds::Bounds;
-use super::candidate::{Placed, Program, Ways};
+use super::candidate::{Placed, Ways};
 use super::error::PlaceError;
 use super::placement::{Placement, Refusals};
 use super::pool::{BASES, Today, Tried, even};
 use super::surrogate::Surrogate;
+use crate::arm::kinematics::Obstacle;
 use crate::arm::robot::Model;
 use crate::retime::energy::EnergyParts;
-use crate::retime::energy::plausible::{Interval, Robots, moments};
-use crate::tool::retrofit::{Simulated, read_program};
+use crate::retime::energy::plausible::{Interval, Robots};
+use crate::tool::retrofit::{Cell, Simulated, read_program};
 
 /// Rounds of the surrogate.
 const ROUNDS: u32 = 6;
@@ -72,10 +73,11 @@ impl Simulations {
 }
 
 /// One of the best placements.
-#[derive(Clone, Debug)]
 pub struct Best {
     /// What it is.
     pub placement: Placement,
+    /// Its program.
+    pub placed: Placed,
     /// Saving over plausible robots, %: of all energy, of the motion energy.
     pub saving_percent: Option<[Interval; 2]>,
 }
@@ -118,29 +120,21 @@ pub struct Found {
     pub refusals: Refusals,
     /// Root mean square error of the surrogate where it was checked, % of the energy.
     pub surrogate_error_percent: Option<f64>,
-    placed: Vec<Placed>,
 }
 
-impl Found {
-    /// The program of one of the best placements.
-    #[must_use]
-    pub fn placed(&self, number: usize) -> Option<&Placed> {
-        self.placed.get(number)
-    }
-}
-
-/// Searches for placements. `progress` receives the number of finished candidates and the total.
+/// Searches for placements; `obstacles` are in the base frame of the robot. `progress` receives the number of finished candidates and the total.
 ///
 /// # Errors
 /// The program cannot be read; a frame cannot be moved or no movement depends on it; nothing moves.
 pub fn place(
-    program: Program<'_>,
+    cell: Cell<'_>,
+    obstacles: &[Obstacle],
     bounds: &[Bounds],
     goal: Goal,
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Found, PlaceError> {
-    let (read, _) = read_program(program.files, program.entry)?;
-    let ways = Ways::new(program, &read, bounds)?;
+    let (program, _) = read_program(cell.files, cell.entry)?;
+    let ways = Ways::new((cell, obstacles), &program, bounds)?;
     let dimension = ways.freedom();
     if dimension > BASES.len() {
         return Err(PlaceError::Cycle(format!(
@@ -148,9 +142,9 @@ pub fn place(
             BASES.len()
         )));
     }
-    let (today, cycle) = ways
+    let today = ways
         .look()
-        .filter(|(today, _)| today.placement.energy.motion_energy_j() > 0.0)
+        .filter(|today| today.placement.energy.motion_energy_j() > 0.0)
         .ok_or_else(|| {
             PlaceError::Cycle(
                 "the cycle has no movement whose energy is known: joulepath simulate shows why"
@@ -182,14 +176,17 @@ pub fn place(
     let (count, refusals) = (search.count, search.refusals);
     let accepted: Vec<Placement> =
         search.tried.into_iter().filter_map(|tried| tried.accepted).collect();
-    let robots = if goal.point_estimate { None } else { Robots::new(program.model) };
-    let mut placed = Vec::new();
+    let robots = if goal.point_estimate { None } else { Robots::new(cell.model) };
     let mut best = Vec::new();
     for placement in shown(&accepted, &today.placement) {
-        placed.push(ways.placed(&placement.point)?);
-        let saving_percent =
-            robots.as_ref().and_then(|robots| ways.saving(robots, &cycle, &placement.point));
-        best.push(Best { placement, saving_percent });
+        let Some((placed, after)) = ways.cycle_at(&placement.point) else { continue };
+        let saving_percent = robots.as_ref().map(|robots| {
+            let of = |model: &Model, cycle: &Simulated| {
+                robots.energies(model, &cycle.simulation, cycle.account.total)
+            };
+            saving_percent(&of(cell.model, &today.cycle), &of(&placed.model, &after))
+        });
+        best.push(Best { placement, placed, saving_percent });
     }
     Ok(Found {
         today: today.placement,
@@ -199,7 +196,6 @@ pub fn place(
         count,
         refusals,
         surrogate_error_percent,
-        placed,
     })
 }
 
@@ -356,7 +352,7 @@ impl Ways<'_> {
         let dimension = self.freedom();
         let corners = [0.0, 1.0].map(|x| vec![x; dimension]);
         let is_same = |point: &Vec<f64>| {
-            self.cycle_at(point).is_some_and(|(_, cycle, _)| cycle.account.total.energy_j() == was)
+            self.cycle_at(point).is_some_and(|(_, cycle)| cycle.account.total.energy_j() == was)
         };
         if corners.iter().all(is_same) {
             return Err(PlaceError::Cycle(
@@ -366,22 +362,16 @@ impl Ways<'_> {
         }
         Ok(())
     }
+}
 
-    /// The saving at a point over plausible robots, %: of all energy, of the motion energy.
-    fn saving(&self, robots: &Robots, before: &Simulated, point: &[f64]) -> Option<[Interval; 2]> {
-        let (model, after, _) = self.cycle_at(point)?;
-        let changes = |model: &Model, cycle: &Simulated| {
-            let changes = robots.changes(model, &moments(model, &cycle.simulation));
-            changes.into_iter().map(move |change| cycle.account.total + change).collect::<Vec<_>>()
-        };
-        let (was, is) = (changes(self.program.model, before), changes(&model, &after));
-        let parts: [fn(&EnergyParts) -> f64; 2] =
-            [EnergyParts::energy_j, EnergyParts::motion_energy_j];
-        Some(parts.map(|part| {
-            let saved = was.iter().zip(&is).map(|(was, is)| 100.0 * (1.0 - part(is) / part(was)));
-            Interval::from_values(&saved.collect::<Vec<f64>>())
-        }))
-    }
+/// The saving over plausible robots, %: of all energy, of the motion energy.
+fn saving_percent(before: &[EnergyParts], after: &[EnergyParts]) -> [Interval; 2] {
+    let parts: [fn(&EnergyParts) -> f64; 2] = [EnergyParts::energy_j, EnergyParts::motion_energy_j];
+    parts.map(|part| {
+        let both = before.iter().zip(after);
+        let saved = both.map(|(was, is)| 100.0 * (1.0 - part(is) / part(was)));
+        Interval::from_values(&saved.collect::<Vec<f64>>())
+    })
 }
 
 /// The best placements that use less than today, some distance apart.

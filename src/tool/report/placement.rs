@@ -81,7 +81,7 @@ pub fn json(of: Placements<'_>, written: &[String], notes: &[String]) -> Value {
     let Found { today, best, accepted, count, refusals, surrogate_error_percent, .. } = of.found;
     let best: Vec<Value> = best
         .iter()
-        .map(|Best { placement, saving_percent }| {
+        .map(|Best { placement, saving_percent, .. }| {
             let mut value = placement_json(of, placement);
             let intervals = saving_percent.as_ref();
             value["saving_interval_percent"] = json!(intervals.map(|x| interval(x[0])));

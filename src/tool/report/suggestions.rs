@@ -9,41 +9,37 @@ use super::place::Places;
 use super::table::{Align, table};
 use crate::rapid::text::SourceFile;
 use crate::retime::energy::EnergyParts;
-use crate::tool::suggest::{Applied, Suggestion};
+use crate::tool::suggest::{Applied, Suggestion, Suggestions};
 
 /// s in an hour.
 const HOUR_S: f64 = 3600.0;
 /// J in a kWh.
 const KWH_J: f64 = 3.6e6;
 
-/// Suggestions and their cycle.
+/// Suggestions, and what their figures are of.
 #[derive(Clone, Copy)]
-pub struct Suggestions<'a> {
+pub struct Shown<'a> {
     /// The suggestions.
-    pub all: &'a [Suggestion],
-    /// Duration of the cycle today, s.
-    pub cycle_s: f64,
-    /// Energy of the cycle today.
-    pub energy: EnergyParts,
+    pub found: &'a Suggestions,
     /// Hours in which the cell works in a year.
     pub hours_per_year: f64,
     /// The files, by id.
     pub files: &'a [SourceFile],
 }
 
-impl Suggestions<'_> {
+impl Shown<'_> {
     /// Saving in a year, kWh.
     fn kwh_per_year(&self, joules: f64) -> f64 {
-        joules / KWH_J * self.hours_per_year * HOUR_S / self.cycle_s
+        joules / KWH_J * self.hours_per_year * HOUR_S / self.found.cycle_s
     }
 
     fn percent(&self, joules: f64) -> f64 {
-        100.0 * joules / self.energy.energy_j()
+        100.0 * joules / self.found.energy.energy_j()
     }
 }
 
 /// The suggestions as JSON.
-pub fn json(of: Suggestions<'_>) -> Value {
+pub fn json(of: Shown<'_>) -> Value {
     let places = Places::new(of.files);
     let value = |(number, one): (usize, &Suggestion)| {
         let place = places.of(one.span);
@@ -65,11 +61,11 @@ pub fn json(of: Suggestions<'_>) -> Value {
         })
     };
     json!({
-        "cycle_s": of.cycle_s,
-        "energy_j": of.energy.energy_j(),
-        "motion_energy_j": of.energy.motion_energy_j(),
+        "cycle_s": of.found.cycle_s,
+        "energy_j": of.found.energy.energy_j(),
+        "motion_energy_j": of.found.energy.motion_energy_j(),
         "hours_per_year": of.hours_per_year,
-        "suggestions": of.all.iter().enumerate().map(value).collect::<Vec<_>>(),
+        "suggestions": of.found.all.iter().enumerate().map(value).collect::<Vec<_>>(),
     })
 }
 
@@ -87,15 +83,15 @@ fn edits(files: &[SourceFile], one: &Suggestion) -> Vec<Value> {
 }
 
 /// The suggestions for people.
-pub fn text(of: Suggestions<'_>) -> String {
+pub fn text(of: Shown<'_>) -> String {
     let places = Places::new(of.files);
     let mut out = format!(
         "today: cycle {:.3} s, energy {:.1} J, of which motions take {:.1} J\n",
-        of.cycle_s,
-        of.energy.energy_j(),
-        of.energy.motion_energy_j()
+        of.found.cycle_s,
+        of.found.energy.energy_j(),
+        of.found.energy.motion_energy_j()
     );
-    if of.all.is_empty() {
+    if of.found.all.is_empty() {
         out.push_str("no change that was tried saves energy in the same time\n");
         return out;
     }
@@ -118,7 +114,7 @@ pub fn text(of: Suggestions<'_>) -> String {
             one.risk.to_owned(),
         ]
     };
-    let rows: Vec<Vec<String>> = of.all.iter().enumerate().map(row).collect();
+    let rows: Vec<Vec<String>> = of.found.all.iter().enumerate().map(row).collect();
     let header = [
         ("number", Align::Right),
         ("place", Align::Left),

@@ -67,17 +67,22 @@ pub(super) fn unchanged(files: &[Source]) -> Vec<OutputFile> {
     files.iter().enumerate().map(file).collect()
 }
 
+/// Edits by the number of their file.
+pub(super) fn by_file(edits: impl IntoIterator<Item = Edit>) -> BTreeMap<usize, Vec<Edit>> {
+    let mut all: BTreeMap<usize, Vec<Edit>> = BTreeMap::new();
+    for edit in edits {
+        all.entry(edit.span.file.0 as usize).or_default().push(edit);
+    }
+    all
+}
+
 /// All files of the program, with these edits; `None` if edits overlap.
 pub(super) fn with_edits(
     files: &[Source],
     edits: impl Iterator<Item = Edit>,
 ) -> Option<Vec<OutputFile>> {
-    let mut by_file: BTreeMap<usize, Vec<Edit>> = BTreeMap::new();
-    for edit in edits {
-        by_file.entry(edit.span.file.0 as usize).or_default().push(edit);
-    }
     let mut outputs = unchanged(files);
-    for (index, edits) in by_file {
+    for (index, edits) in by_file(edits) {
         let bytes = apply(&files[index].file.bytes, &edits).ok()?;
         outputs[index] = OutputFile::changed(index, &files[index], bytes);
     }

@@ -5,6 +5,7 @@
 
 mod brakes;
 mod candidate;
+mod cell;
 mod cycle_time;
 mod elsewhere;
 mod emission_context;
@@ -52,6 +53,7 @@ mod verify_streams;
 mod without;
 
 pub use brakes::BRAKE_NOTE;
+pub use cell::Cell;
 pub use elsewhere::written_in;
 pub use error::RetrofitError;
 pub use figures::{Figures, LowerLimits, Retrofit, Segment, SegmentKind, Verification};

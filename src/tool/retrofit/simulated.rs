@@ -34,16 +34,6 @@ impl Simulated {
         Simulated { account: account(model, &simulation), simulation }
     }
 
-    /// Number of runs that could not be simulated as programmed.
-    pub(in crate::tool) fn problems(&self) -> usize {
-        let is_problem = |what: &What| match what {
-            What::Run(run) => run.problem.is_some(),
-            What::Left(_) => true,
-            What::Wait(_) | What::Output(..) => false,
-        };
-        self.simulation.events.iter().filter(|event| is_problem(&event.what)).count()
-    }
-
     /// Load and joint positions of the robot at the end of the cycle.
     pub(super) fn end(&self) -> Option<(&Load, &Joints)> {
         self.simulation.events.iter().rev().find_map(|event| match &event.what {

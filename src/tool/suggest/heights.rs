@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use super::cell::Places;
-use super::lever::{Lever, Offer, Offers, word};
-use crate::rapid::ir::hir::{Arg, Call, Callee, Expr, ExprKind, StmtKind, UnaryOp};
+use super::lever::{Lever, Offer, Offers, written};
+use crate::rapid::ir::hir::{Arg, Call, Callee, Expr, ExprKind, StmtKind};
 use crate::rapid::ir::program::{Program, Symbol};
 use crate::rapid::text::{Edit, Span};
 use crate::tool::lint::context::Context;
+use crate::tool::lint::process::Kept;
 
 /// Shares of the height that are offered.
 const SHARES: [f64; 2] = [0.75, 0.5];
@@ -36,12 +36,12 @@ pub(super) fn levers(context: &Context<'_>) -> Vec<Lever> {
             None => found.extend(literal(context.program, module, height)),
         }
     }
-    // A constant that also stands elsewhere may mean something else there; the risk says so.
+    // Where a constant also stands for a place at which something happens, the simulation refuses it.
     found.into_iter().filter(|(_, mm)| mm.abs() > LEAST_MM).map(|at| lever(context, at)).collect()
 }
 
 fn lever(context: &Context<'_>, (span, mm): (Span, f64)) -> Lever {
-    let was = word(context, span);
+    let was = written(context, span);
     let offer = |share: &f64| {
         let lower = (mm.abs() * share).max(LEAST_MM).round().copysign(mm);
         Offer {
@@ -52,7 +52,7 @@ fn lever(context: &Context<'_>, (span, mm): (Span, f64)) -> Lever {
     Lever {
         span,
         risk: "less room above what stands there",
-        places: Places::Same,
+        kept: Kept::Outputs,
         offers: Offers::List(SHARES.iter().map(offer).collect()),
     }
 }
@@ -83,26 +83,12 @@ fn stated(program: &Program, routine: &str, place: usize) -> Vec<(Span, f64)> {
     all
 }
 
-/// The number of an expression: a literal, or a constant with a literal value.
+/// The number of an expression, and its place: a literal, or that of a constant with a literal value.
 fn literal(program: &Program, module: usize, expr: &Expr) -> Option<(Span, f64)> {
-    match &expr.kind {
-        ExprKind::Num(x) => Some((expr.span, *x)),
-        ExprKind::Unary(UnaryOp::Minus, inner) => match inner.kind {
-            ExprKind::Num(x) => Some((expr.span, -x)),
-            _ => None,
-        },
-        ExprKind::Ref(name) => {
-            let Symbol::Data(id) = program.resolve(module, &name.key)? else { return None };
-            if program.is_written(id) {
-                return None;
-            }
-            let init = program.data(id).init.as_ref()?;
-            // Once only: a constant of a constant is left.
-            match &init.kind {
-                ExprKind::Num(x) => Some((init.span, *x)),
-                _ => None,
-            }
-        }
-        _ => None,
-    }
+    let ExprKind::Ref(name) = &expr.kind else {
+        return Some((expr.span, expr.literal_number()?));
+    };
+    let Symbol::Data(id) = program.resolve(module, &name.key)? else { return None };
+    let init = program.data(id).init.as_ref().filter(|_| !program.is_written(id))?;
+    Some((init.span, init.literal_number()?))
 }

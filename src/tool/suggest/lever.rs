@@ -1,8 +1,12 @@
 //! A place of the text that may be changed, and how.
 
-use super::cell::Places;
+use crate::rapid::ir::number::number;
 use crate::rapid::text::{Edit, Span};
 use crate::tool::lint::context::Context;
+use crate::tool::lint::process::Kept;
+
+/// Decimals of a shifted number, mm or degrees.
+const DECIMALS: usize = 2;
 
 /// A place that may be changed.
 pub(super) struct Lever {
@@ -10,8 +14,8 @@ pub(super) struct Lever {
     pub(super) span: Span,
     /// What may go wrong.
     pub(super) risk: &'static str,
-    /// Where the robot has to be for what it does.
-    pub(super) places: Places,
+    /// Where the robot still has to be at the same places.
+    pub(super) kept: Kept,
     /// The alternatives.
     pub(super) offers: Offers,
 }
@@ -47,18 +51,9 @@ pub(super) struct Shift {
 }
 
 impl Shift {
-    /// Number of values.
-    pub(super) fn dimension(&self) -> usize {
-        self.values.len()
-    }
-
     /// The offer of a shift.
     pub(super) fn offer(&self, shift: &[f64]) -> Offer {
-        let text = |x: f64| {
-            let text = format!("{x:.2}");
-            text.trim_end_matches('0').trim_end_matches('.').to_owned()
-        };
-        let moved = self.values.iter().zip(shift).map(|(x, by)| text(x + by));
+        let moved = self.values.iter().zip(shift).map(|(x, by)| number(x + by, DECIMALS));
         let by: Vec<String> = shift.iter().map(|by| format!("{by:+.0}")).collect();
         Offer {
             title: format!("{} shifted by {} {}", self.name, by.join(", "), self.unit),
@@ -70,7 +65,7 @@ impl Shift {
     }
 }
 
-/// The text of a span as one word.
-pub(super) fn word(context: &Context<'_>, span: Span) -> String {
+/// The text of a span.
+pub(super) fn written(context: &Context<'_>, span: Span) -> String {
     context.files[span.file.0 as usize].text(span).trim().to_owned()
 }

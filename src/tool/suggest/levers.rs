@@ -1,11 +1,8 @@
 //! What may be changed in a program: each lever offers some edits.
 
-use std::collections::BTreeSet;
-
-use super::cell::Places;
 use super::lever::{Lever, Offer, Offers};
-use crate::rapid::text::Span;
 use crate::tool::lint::context::Context;
+use crate::tool::lint::process::Kept;
 use crate::tool::lint::rule::Finding;
 
 /// All levers of a program.
@@ -21,16 +18,14 @@ pub(super) fn levers(context: &Context<'_>, findings: &[Finding]) -> Vec<Lever> 
 
 /// The fixes of lints.
 fn of_findings(findings: &[Finding]) -> Vec<Lever> {
-    let mut seen: BTreeSet<Span> = BTreeSet::new();
     let lever = |finding: &Finding| {
         let fix = finding.fix.as_ref().filter(|_| finding.saving.is_some())?;
-        let edits = fix.edits.clone();
         let title = format!("{} ({} {})", finding.change, finding.rule.code, finding.rule.name);
-        seen.insert(finding.span).then_some(Lever {
+        Some(Lever {
             span: finding.span,
             risk: "see joulepath rule for this code",
-            places: Places::Same,
-            offers: Offers::List(vec![Offer { title, edits }]),
+            kept: Kept::Waits,
+            offers: Offers::List(vec![Offer { title, edits: fix.edits.clone() }]),
         })
     };
     findings.iter().filter_map(lever).collect()

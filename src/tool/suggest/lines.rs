@@ -1,10 +1,10 @@
 //! Joint movements in place of lines between fly-by points.
 
-use super::cell::Places;
 use super::lever::{Lever, Offer, Offers};
 use crate::rapid::builtins::MoveForm;
 use crate::rapid::text::Edit;
 use crate::tool::lint::context::Context;
+use crate::tool::lint::process::Kept;
 use crate::tool::lint::site::Site;
 
 /// The lines that do not end at a stop point.
@@ -25,7 +25,7 @@ fn lever(site: &Site<'_>) -> Option<Lever> {
     Some(Lever {
         span: site.stmt.span,
         risk: "the tool leaves the line",
-        places: Places::Same,
+        kept: Kept::Outputs,
         offers: Offers::List(vec![offer]),
     })
 }

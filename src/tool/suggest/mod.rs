@@ -1,9 +1,9 @@
 //! Changes that a person has to approve: each one is an edit of the text, simulated in the whole cycle.
 //!
-//! [`levers`] proposes, [`cell`] simulates, [`swept`] compares the space that the arm needs, and
-//! [`suggestions`] ranks. Nothing here is a proof of the process: what a change risks is said with it.
+//! `levers` proposes, `change` simulates, `swept` compares the space that the arm needs, and `list` ranks
+//! and applies. Nothing here is a proof of the process: what a change risks is said with it.
 
-mod cell;
+mod change;
 mod heights;
 mod lever;
 mod levers;
@@ -14,5 +14,4 @@ mod speeds;
 mod swept;
 mod zones;
 
-pub use cell::Cell;
-pub use list::{Applied, Suggestion, applied, suggestions};
+pub use list::{Applied, Suggestion, Suggestions, suggestions};

@@ -3,13 +3,13 @@
 
 use std::collections::BTreeMap;
 
-use super::cell::Places;
 use super::lever::{Lever, Offers, Shift};
 use crate::rapid::builtins::MoveForm;
-use crate::rapid::ir::hir::{Data, Expr, ExprKind, UnaryOp};
+use crate::rapid::ir::hir::{Data, Expr, ExprKind};
 use crate::rapid::ir::program::{DataId, Program, Symbol};
 use crate::rapid::ir::walk::statements;
 use crate::tool::lint::context::Context;
+use crate::tool::lint::process::Kept;
 use crate::tool::lint::site::Site;
 use crate::tool::lint::trace::Action;
 
@@ -36,7 +36,7 @@ pub(super) fn levers(context: &Context<'_>) -> Vec<Lever> {
         Some(Lever {
             span: data.span,
             risk: "the robot goes another way or rests elsewhere",
-            places: Places::Other,
+            kept: Kept::Order,
             offers: Offers::Shift(shift),
         })
     };
@@ -58,22 +58,13 @@ fn is_free(context: &Context<'_>, site: &Site<'_>) -> bool {
 fn shift(data: &Data) -> Option<Shift> {
     let ExprKind::Aggregate(parts) = &data.init.as_ref()?.kind else { return None };
     let first = parts.first()?;
-    let ExprKind::Aggregate(numbers) = &first.kind else { return None };
-    let values = numbers.iter().map(number).collect::<Option<Vec<f64>>>()?;
+    let values = first.literal_numbers()?;
     let (unit, [step, most]) = match data.type_name.key.as_str() {
         "robtarget" if values.len() == 3 => ("mm", POSITION),
         "jointtarget" if values.len() == 6 => ("degrees", JOINTS),
         _ => return None,
     };
     Some(Shift { span: first.span, values, name: data.name.text.clone(), unit, step, most })
-}
-
-fn number(expr: &Expr) -> Option<f64> {
-    match &expr.kind {
-        ExprKind::Num(x) => Some(*x),
-        ExprKind::Unary(UnaryOp::Minus, inner) => number(inner).map(|x| -x),
-        _ => None,
-    }
 }
 
 /// How often each name is used in statements and declarations, by its key.

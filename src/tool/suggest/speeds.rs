@@ -1,16 +1,13 @@
 //! Other programmed speeds: slower where the time is not needed, faster for joint movements where the
 //! base load costs more than the haste.
 
-use super::cell::Places;
-use super::lever::{Lever, Offer, Offers, word};
+use super::lever::{Lever, Offer, Offers, written};
+use crate::rapid::builtins::speeds;
 use crate::rapid::text::Edit;
 use crate::tool::lint::context::Context;
+use crate::tool::lint::process::Kept;
 use crate::tool::lint::site::Site;
 
-/// Predefined speeds, mm/s.
-const SPEEDS: [u32; 18] = [
-    50, 80, 100, 150, 200, 300, 400, 500, 600, 800, 1000, 1500, 2000, 2500, 3000, 4000, 5000, 7000,
-];
 /// Least and largest speed over the programmed one.
 const RANGE: [f64; 2] = [0.4, 3.0];
 
@@ -24,22 +21,22 @@ fn lever(context: &Context<'_>, site: &Site<'_>) -> Option<Lever> {
     if !site.is_plain() || site.executions.is_empty() {
         return None;
     }
-    let was = word(context, site.speed.span);
+    let was = written(context, site.speed.span);
     let now = speed.tcp * 1e3;
     // A line has its speed from the process.
     let most = if site.is_linear() { 1.0 } else { RANGE[1] };
-    let others = SPEEDS.iter().filter(|v| {
-        let share = f64::from(**v) / now;
+    let others = speeds().filter(|v| {
+        let share = f64::from(*v) / now;
         share >= RANGE[0] && share <= most && (share - 1.0).abs() > 1e-9
     });
-    let offer = |v: &u32| Offer {
+    let offer = |v: u32| Offer {
         title: format!("v{v} in place of {was}"),
         edits: vec![Edit { span: site.speed.span, text: format!("v{v}").into_bytes() }],
     };
     Some(Lever {
         span: site.stmt.span,
         risk: "another speed",
-        places: Places::Same,
+        kept: Kept::Outputs,
         offers: Offers::List(others.map(offer).collect()),
     })
 }

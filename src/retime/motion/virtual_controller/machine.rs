@@ -8,7 +8,7 @@ use super::state::{Pending, VirtualController};
 use crate::arm::dynamics::Load;
 use crate::arm::kinematics::fk;
 use crate::rapid::ir::exec::{Machine, WaitResult};
-use crate::rapid::ir::movement::{Movement, Output, Target, Unresolved, Wait};
+use crate::rapid::ir::movement::{Movement, Output, Unresolved, Wait};
 use crate::retime::path::joint_path::Joints;
 
 impl Machine for VirtualController<'_> {
@@ -24,13 +24,7 @@ impl Machine for VirtualController<'_> {
                 return;
             }
         };
-        let first = !std::mem::replace(&mut self.moved, true);
-        if first
-            && self.options.start.is_none()
-            && let Target::Joints(q) = &movement.target
-        {
-            self.q = *q;
-        }
+        self.begin(&movement);
         match self.leg(&movement) {
             Ok(leg) => {
                 self.q = leg.end;

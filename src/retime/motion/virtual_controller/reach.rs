@@ -6,7 +6,7 @@ use super::options::Options;
 use super::state::VirtualController;
 use crate::arm::robot::Model;
 use crate::rapid::ir::exec::{Machine, WaitResult, execute};
-use crate::rapid::ir::movement::{Movement, Output, Target, Unresolved, Wait};
+use crate::rapid::ir::movement::{Movement, Output, Unresolved, Wait};
 use crate::rapid::ir::program::{Program, RoutineId};
 use crate::retime::path::joint_path::Joints;
 use crate::retime::path::leg::first_difference;
@@ -39,13 +39,7 @@ impl Machine for Reach<'_> {
                 return;
             }
         };
-        let first = !std::mem::replace(&mut self.controller.moved, true);
-        if first
-            && self.controller.options.start.is_none()
-            && let Target::Joints(q) = &movement.target
-        {
-            self.controller.q = *q;
-        }
+        self.controller.begin(&movement);
         let Ok(leg) = self.controller.leg(&movement) else {
             self.count += 1;
             self.certain = false;

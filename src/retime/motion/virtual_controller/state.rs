@@ -6,7 +6,7 @@ use super::draft::Draft;
 use super::options::Options;
 use crate::arm::robot::Model;
 use crate::rapid::ir::exec::{Note, WaitResult};
-use crate::rapid::ir::movement::{Movement, Tool};
+use crate::rapid::ir::movement::{Movement, Target, Tool};
 use crate::rapid::text::Span;
 use crate::retime::motion::timeline::{Event, Simulation, What};
 use crate::retime::path::Leg;
@@ -92,6 +92,17 @@ impl<'a> VirtualController<'a> {
             unresolved: self.notes,
             assumed: self.assumed,
             inputs_asked: self.asked,
+        }
+    }
+
+    /// Where the robot stands before its first movement, if nobody states it: at a target in joints.
+    pub(super) fn begin(&mut self, movement: &Movement) {
+        let first = !std::mem::replace(&mut self.moved, true);
+        if first
+            && self.options.start.is_none()
+            && let Target::Joints(q) = &movement.target
+        {
+            self.q = *q;
         }
     }
 

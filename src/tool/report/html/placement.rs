@@ -41,7 +41,7 @@ pub fn place_report(
     context.insert("energy", &joules(today.energy.energy_j()));
     context.insert("motion_energy", &joules(today.energy.motion_energy_j()));
     context.insert("axes", &of.axes());
-    let row = |(number, Best { placement, saving_percent }): (usize, &Best)| {
+    let row = |(number, Best { placement, saving_percent, .. }): (usize, &Best)| {
         let [saving, motion] = of.saving_percent(placement);
         Row {
             coordinates: of.coordinates(placement).iter().map(|x| fixed(*x, 1)).collect(),
