@@ -162,7 +162,7 @@ fn unusable_requests_have_a_way_out() {
         ("wobjTable:x=10", "no LOW..HIGH"),
         ("wobj0:x=0..10", "move base"),
         ("tGrip:x=0..10", "give rz alone"),
-        ("wobjSet:x=0..10", "the program writes it"),
+        ("wobjSet:x=0..10", "m.mod:4: the program writes it"),
         ("wobjUnit:x=0..10", "a mechanical unit moves"),
         ("wobjUnused:x=0..10", "no movement of the cycle depends on"),
         ("tGrip+wobjTable:rz=0..10", "separate --move"),

@@ -88,6 +88,22 @@ fn each_suggestion_saves_what_it_promises() {
     }
 }
 
+/// The way back of a program that ends elsewhere is not simulated, so where it begins stays.
+#[test]
+fn the_start_stays_if_the_program_ends_elsewhere() {
+    let shifts_home = |text: &str| {
+        let folder = folder();
+        fs::write(folder.path().join("in/m.mod"), text).unwrap();
+        let result = json(folder.path(), &["optimize", "in", "--suggest", "--point-estimate"]);
+        let all = result["suggestions"].as_array().unwrap();
+        all.iter().any(|one| one["change"].as_str().unwrap().contains("jHome shifted"))
+    };
+    assert!(shifts_home(PROGRAM));
+    let (begin, end) = PROGRAM.split_at(PROGRAM.rfind("MoveAbsJ jHome").unwrap());
+    let (_, end) = end.split_once('\n').unwrap();
+    assert!(!shifts_home(&format!("{begin}{end}")));
+}
+
 /// A height that is also that of a place where an output is switched stays.
 #[test]
 fn places_of_outputs_stay() {

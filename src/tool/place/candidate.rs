@@ -54,7 +54,7 @@ impl<'a> Ways<'a> {
                     return Err(wrong("it is named twice; name each frame once"));
                 }
                 names.push(key);
-                let frame = Frame::find(program, name)?;
+                let frame = Frame::find(program, cell.files, name)?;
                 let stays =
                     (0..6).find(|axis| bounds.axes[*axis].is_some() && !frame.moves_along(*axis));
                 if stays.is_some() {

@@ -10,6 +10,7 @@ use crate::rapid::ir::hir::{Data, Expr, ExprKind};
 use crate::rapid::ir::number::number;
 use crate::rapid::ir::program::{DataId, Program};
 use crate::rapid::text::{Edit, Span};
+use crate::tool::retrofit::{Source, file_and_line};
 
 /// The name of the robot's base.
 const BASE: &str = "base";
@@ -46,7 +47,11 @@ pub(super) struct Mounted {
 
 impl Frame {
     /// The frame of this name.
-    pub(super) fn find(program: &Program, name: &str) -> Result<Frame, PlaceError> {
+    pub(super) fn find(
+        program: &Program,
+        files: &[Source],
+        name: &str,
+    ) -> Result<Frame, PlaceError> {
         if name.eq_ignore_ascii_case(BASE) {
             return Ok(Frame::Base);
         }
@@ -80,24 +85,28 @@ impl Frame {
                      {all}{meant}"
                 )));
             }
-            _ => {
-                return Err(wrong(
-                    "several modules declare it; give the frames different names".into(),
-                ));
+            [(_, first), (_, second), ..] => {
+                let [first, second] = [first, second].map(|data| file_and_line(files, data.span));
+                return Err(wrong(format!(
+                    "{first} and {second} both declare it; give the frames different names"
+                )));
             }
+        };
+        let wrong = |reason: &str| {
+            let place = file_and_line(files, data.span);
+            PlaceError::Frame { name: name.to_owned(), reason: format!("{place}: {reason}") }
         };
         if program.is_written(id) {
             return Err(wrong(
                 "the program writes it, so that the numbers in the source are not where it stands; \
-                 move another frame, or base"
-                    .into(),
+                 move another frame, or base",
             ));
         }
         let read = match data.type_name.key.as_str() {
             "wobjdata" => work_object(data),
             _ => tool(data),
         };
-        read.map_err(|reason| wrong(reason.into()))
+        read.map_err(wrong)
     }
 
     /// Whether it can be moved along this axis.

@@ -31,6 +31,7 @@ pub(super) fn levers(context: &Context<'_>) -> Vec<Lever> {
     let lever = |(id, sites): (DataId, Vec<&Site<'_>>)| {
         let data = context.program.data(id);
         let is_free = !context.program.is_written(id)
+            && returns(context, &sites)
             && uses.get(data.name.key.as_str()) == Some(&sites.len());
         let shift = is_free.then(|| shift(data)).flatten()?;
         Some(Lever {
@@ -41,6 +42,18 @@ pub(super) fn levers(context: &Context<'_>) -> Vec<Lever> {
         })
     };
     of.into_iter().filter_map(lever).collect()
+}
+
+/// Whether the cycle ends where it begins, if it begins at the target of one of these movements: the way
+/// back of a program that ends elsewhere is not simulated.
+fn returns(context: &Context<'_>, sites: &[&Site<'_>]) -> bool {
+    let moves = |step: &usize| context.trace[*step].what.moves();
+    let steps = 0..context.trace.len();
+    let [first, last] = [steps.clone().find(moves), steps.rev().find(moves)];
+    let is_there = |step: Option<usize>| {
+        step.is_some_and(|step| sites.iter().any(|site| site.executions.contains(&step)))
+    };
+    !is_there(first) || is_there(last)
 }
 
 /// Whether a movement passes its target, or comes to it along the joints and nothing is switched there.
