@@ -21,6 +21,8 @@ use crate::tool::retrofit::{Cell, Simulated, read_program};
 const ROUNDS: u32 = 6;
 /// Candidates of which each round looks at mean and deviation.
 const LOOKED_AT: usize = 1000;
+/// Energy of a candidate that is predicted to be late, of its own: it comes after the others.
+const LATE: f64 = 2.0;
 /// New candidates around the best one in each round.
 const NEAR: u32 = 200;
 /// How far those are from the best one in the first round, of the range.
@@ -122,7 +124,8 @@ pub struct Found {
     pub surrogate_error_percent: Option<f64>,
 }
 
-/// Searches for placements; `obstacles` are in the base frame of the robot. `progress` receives the number of finished candidates and the total.
+/// Searches for placements; `obstacles` are in the base frame of the robot. `progress` receives the number
+/// of finished candidates and the total.
 ///
 /// # Errors
 /// The program cannot be read; a frame cannot be moved or no movement depends on it; nothing moves.
@@ -235,16 +238,15 @@ impl Search<'_> {
             });
             self.add(near.collect());
         }
-        let Some([energy, time]) = self.surrogates() else { return };
-        let limit = self.today.placement.cycle_s;
-        let means: Vec<f64> = self.rest.par_iter().map(|point| energy.mean_at(point)).collect();
-        let mut order: Vec<usize> = (0..means.len()).collect();
-        order.sort_by(|a, b| means[*a].total_cmp(&means[*b]));
-        let mut worth = vec![f64::INFINITY; means.len()];
-        // Deviations take time: of the least means only.
+        let Some(surrogates) = self.surrogates() else { return };
+        let predicted = self.predicted(&surrogates);
+        let mut order: Vec<usize> = (0..predicted.len()).collect();
+        order.sort_by(|a, b| predicted[*a].total_cmp(&predicted[*b]));
+        let mut worth = vec![f64::INFINITY; predicted.len()];
+        // Deviations take time: of the most promising ones only.
         for index in order.into_iter().take(LOOKED_AT) {
-            let [[j, j_sd], [s, s_sd]] = [energy.at(&self.rest[index]), time.at(&self.rest[index])];
-            if s - s_sd <= limit {
+            let [[j, j_sd], [s, s_sd]] = surrogates.each_ref().map(|of| of.at(&self.rest[index]));
+            if s - s_sd <= self.today.placement.cycle_s {
                 worth[index] = j - j_sd;
             }
         }
@@ -254,27 +256,28 @@ impl Search<'_> {
 
     /// Simulates the candidates of least predicted energy. The error of the predictions, % of the energy.
     fn confirm(&mut self) -> Option<f64> {
-        let [energy, time] = self.surrogates()?;
-        let limit = self.today.placement.cycle_s;
-        let worth: Vec<f64> = self
-            .rest
-            .iter()
-            .map(|point| {
-                let late = time.mean_at(point) > limit;
-                // What is predicted to be slower comes last.
-                energy.mean_at(point) * if late { 2.0 } else { 1.0 }
-            })
-            .collect();
+        let surrogates = self.surrogates()?;
+        let worth = self.predicted(&surrogates);
         let chosen = self.take(&worth, self.simulations.last);
         let before = self.tried.len();
         self.simulate(chosen);
         let errors = self.tried[before..].iter().filter_map(|tried| {
             let [simulated, _] = tried.figures?;
-            Some((energy.mean_at(&tried.point) / simulated - 1.0).powi(2))
+            Some((surrogates[0].mean_at(&tried.point) / simulated - 1.0).powi(2))
         });
         let errors: Vec<f64> = errors.collect();
         let mean = errors.iter().sum::<f64>() / errors.len() as f64;
         (!errors.is_empty()).then(|| 100.0 * mean.sqrt())
+    }
+
+    /// Predicted energies of the candidates that are left, J; more where the cycle would be late.
+    fn predicted(&self, [energy, time]: &[Surrogate; 2]) -> Vec<f64> {
+        let limit = self.today.placement.cycle_s;
+        let one = |point: &Vec<f64>| {
+            let late = if time.mean_at(point) > limit { LATE } else { 1.0 };
+            late * energy.mean_at(point)
+        };
+        self.rest.par_iter().map(one).collect()
     }
 
     fn add(&mut self, points: Vec<Vec<f64>>) {
