@@ -4,6 +4,7 @@ use nalgebra::{Isometry3, Vector4};
 
 use super::ceilings::{Ceiling, Ceilings};
 use super::freedom::Freedom;
+use super::smoothed::{Located, Smoothed};
 use crate::arm::kinematics::fk;
 use crate::arm::robot::Model;
 use crate::retime::motion::timed::TimedMotion;
@@ -13,6 +14,8 @@ use crate::retime::path::joint_path::{DOF, Joints};
 
 /// Distance of the samples of the path, m.
 const SPACING: f64 = 0.002;
+/// Largest distance (m) and rotation (rad) of two samples at one pose.
+const SAME: f64 = 1e-9;
 /// Weight of a rotation of the tool in distances, m/rad.
 const METRES_PER_RADIAN: f64 = 0.1;
 /// Allowed distance from a line or arc, m.
@@ -159,61 +162,44 @@ impl Corridor {
         }
     }
 
-    /// TCP speed ceilings of all places, smoothed: each lower ceiling is extended by `reach` (m)
-    /// to both sides and rises beyond with `acceleration` (m/s²).
-    pub fn smoothed_ceilings(&self, reach: f64, acceleration: f64) -> Vec<f64> {
+    /// The limits of a stream at each place without steps: polishing needs derivatives. Each lower TCP
+    /// ceiling is extended by `reach` (m) to both sides.
+    pub(super) fn smoothed(&self, reach: f64) -> Smoothed {
         let last = self.places.len() - 1;
         let n = (reach / SPACING).ceil() as usize;
-        let mut smoothed: Vec<f64> = (0..=last)
-            .map(|i| {
-                let around = i.saturating_sub(n)..=(i + n).min(last);
-                self.places[around].iter().map(|p| p.ceiling.tcp).fold(f64::INFINITY, f64::min)
+        let lowest = |i: usize| {
+            let around = i.saturating_sub(n)..=(i + n).min(last);
+            self.places[around].iter().map(|p| p.ceiling.tcp).fold(f64::INFINITY, f64::min)
+        };
+        let each = |value: &dyn Fn(&Place) -> f64| self.places.iter().map(value).collect();
+        let ways: Vec<f64> = self
+            .places
+            .windows(2)
+            .map(|pair| {
+                let moved = pair[1].pose.translation.vector - pair[0].pose.translation.vector;
+                let turns =
+                    turn_vector(&pair[0].pose.rotation.coords, &pair[1].pose.rotation.coords);
+                moved.norm().hypot(METRES_PER_RADIAN * turns.norm())
             })
             .collect();
-        let step = |i: usize| {
-            let (a, b) = (&self.places[i].pose, &self.places[i + 1].pose);
-            (a.translation.vector - b.translation.vector).norm()
-        };
-        let rise = |from: f64, d: f64| (from * from + 2.0 * acceleration * d).sqrt();
-        for i in 0..last {
-            smoothed[i + 1] = smoothed[i + 1].min(rise(smoothed[i], step(i)));
-        }
-        for i in (0..last).rev() {
-            smoothed[i] = smoothed[i].min(rise(smoothed[i + 1], step(i)));
-        }
-        smoothed
+        Smoothed::new(
+            &ways,
+            (0..=last).map(lowest).collect(),
+            std::array::from_fn(|j| each(&|place| place.ceiling.joints[j])),
+            each(&|place| place.tolerance),
+            each(&|place| place.polygon),
+        )
     }
 
-    /// The largest speeds at a place.
-    pub(super) fn ceiling(&self, place: usize) -> &Ceiling {
-        &self.places[place].ceiling
-    }
-
-    /// The distance of a pose relative to its tolerance, and `values` interpolated at the pose. The
-    /// place is searched near `from`, which is set to it.
-    pub fn locate(&self, pose: &Isometry3<f64>, values: &[f64], from: &mut usize) -> (f64, f64) {
-        let i = self.nearest(pose, from);
-        let distance = self.distance(pose, i) / self.places[i].tolerance;
-        // Interpolation between the nearest place and its neighbour on the side of the pose.
-        let here = self.places[i].pose.translation.vector;
-        let offset = pose.translation.vector - here;
-        for k in [i + 1, i.wrapping_sub(1)] {
-            if k >= self.places.len() {
-                continue;
-            }
-            let along = self.places[k].pose.translation.vector - here;
-            let share = offset.dot(&along) / along.norm_squared();
-            if share > 0.0 {
-                return (distance, values[i] + (values[k] - values[i]) * share.min(1.0));
-            }
-        }
-        (distance, values[i])
-    }
-
-    /// The distance of a pose on the polygon relative to its tolerance, searched in the same way.
-    pub(super) fn polygon_share(&self, pose: &Isometry3<f64>, from: &mut usize) -> f64 {
-        let i = self.nearest(pose, from);
-        self.distance(pose, i) / self.places[i].polygon
+    /// The position of a pose along the places. It is searched near `from`, which is set to the
+    /// nearest place.
+    pub(super) fn locate(&self, pose: &Isometry3<f64>, from: &mut usize) -> Located {
+        let place = self.nearest(pose, from);
+        let sides = self.neighbours(place).map(|next| {
+            let (distance, share) = self.aside(pose, place, next);
+            Located { place, next, share, distance }
+        });
+        if sides[1].distance < sides[0].distance { sides[1] } else { sides[0] }
     }
 
     /// The place nearest to a pose. It is searched near `from`, which is set to it.
@@ -236,22 +222,40 @@ impl Corridor {
 
     /// Distance of a pose from the path stretches before and after a place, m.
     fn distance(&self, pose: &Isometry3<f64>, i: usize) -> f64 {
+        self.neighbours(i)
+            .map(|k| self.aside(pose, i, k).0)
+            .into_iter()
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// The next and the previous place at another pose, or the last and the first: two pieces of the
+    /// path have a place each where they meet.
+    fn neighbours(&self, i: usize) -> [usize; 2] {
+        let here = &self.places[i].pose;
+        let other = |k: &usize| {
+            let there = &self.places[*k].pose;
+            let moved = (there.translation.vector - here.translation.vector).norm();
+            moved.max(turn_vector(&here.rotation.coords, &there.rotation.coords).norm()) > SAME
+        };
+        let last = self.places.len() - 1;
+        [(i..=last).find(other).unwrap_or(last), (0..i).rev().find(other).unwrap_or(0)]
+    }
+
+    /// Distance of a pose from the stretch between two places, m, and the share of the stretch at
+    /// the nearest point.
+    fn aside(&self, pose: &Isometry3<f64>, i: usize, k: usize) -> (f64, f64) {
         let place = &self.places[i].pose;
+        let next = &self.places[k].pose;
         let from = pose.translation.vector - place.translation.vector;
         let rotation = place.rotation.coords;
         let turned = METRES_PER_RADIAN * turn_vector(&rotation, &pose.rotation.coords);
-        let aside = |k: usize| {
-            let next = &self.places[k].pose;
-            let along = next.translation.vector - place.translation.vector;
-            let turns = METRES_PER_RADIAN * turn_vector(&rotation, &next.rotation.coords);
-            let square = along.norm_squared() + turns.norm_squared();
-            let dot = from.dot(&along) + turned.dot(&turns);
-            let share = if square > 0.0 { (dot / square).clamp(0.0, 1.0) } else { 0.0 };
-            (from - along * share).norm().hypot((turned - turns * share).norm())
-        };
-        let last = self.places.len() - 1;
-        let neighbours = [i.saturating_sub(1), (i + 1).min(last)];
-        neighbours.map(aside).into_iter().fold(f64::INFINITY, f64::min)
+        let along = next.translation.vector - place.translation.vector;
+        let turns = METRES_PER_RADIAN * turn_vector(&rotation, &next.rotation.coords);
+        let square = along.norm_squared() + turns.norm_squared();
+        let dot = from.dot(&along) + turned.dot(&turns);
+        let share = if square > 0.0 { (dot / square).clamp(0.0, 1.0) } else { 0.0 };
+        let distance = (from - along * share).norm().hypot((turned - turns * share).norm());
+        (distance, share)
     }
 }
 

@@ -1,5 +1,7 @@
 //! The merit function of stream polishing and its quadratic model.
 
+use std::collections::BTreeMap;
+
 use super::banded::Banded;
 use super::banded_program::Row;
 use super::path_energy::{EnergyModel, Sharing};
@@ -151,9 +153,9 @@ impl<'a, P: Plant> PolishProblem<'a, P> {
     }
 
     /// Computes the derivatives.
-    fn linearise(&self, place: &Place, near: usize, lin: &mut Linearised) {
+    fn linearise(&self, place: &Place, near: usize, beyond: f64, lin: &mut Linearised) {
         lin.torque_by = self.plant.torque_derivatives(&place.q, &place.qd, &place.qdd);
-        if lin.path.iter().all(|share| *share <= NEAR) {
+        if lin.path.iter().all(|share| *share <= beyond) {
             return;
         }
         // The path shares depend on angles and speeds, not on accelerations.
@@ -181,28 +183,62 @@ impl<'a, P: Plant> PolishProblem<'a, P> {
             shares: Vec::new(),
             broken: VIOLATION_PRICE * excess,
         };
-        let mut near = 0;
-        let limit = self.plant.torque_limit();
-        for place in places(stream, |piece| self.plant.steps(piece)) {
-            let mut lin = self.shares(&place, &mut near);
-            let loaded = (0..DOF).any(|j| lin.torque[j].abs() > NEAR * limit[j]);
-            if place.seconds > 0.0 || loaded || lin.path.iter().any(|share| *share > NEAR) {
-                self.linearise(&place, near, &mut lin);
-                self.add_place(&place, &lin, &mut model);
-            }
+        for (place, lin) in self.linearised(stream, NEAR, true) {
+            let columns = self.columns(&place, &lin);
+            self.add_costs(&place, &lin, &columns, &mut model);
+            let mut rows = Vec::new();
+            self.add_limits(&lin, &columns, NEAR, &mut rows);
+            model.shares.extend(rows.into_iter().map(|(_, row)| row));
         }
-        self.add_polygon(stream, &mut model);
+        self.add_polygon(stream, NEAR, &mut model.shares);
         model
     }
 
+    /// The limits that a stream exceeds, as rows in the change of the variables from it: of each
+    /// limit the worst sample on each piece.
+    pub(super) fn exceeded(&self, stream: &Stream) -> Vec<Row> {
+        let mut worst: BTreeMap<(usize, usize), Row> = BTreeMap::new();
+        for (place, lin) in self.linearised(stream, 1.0 - ROOM, false) {
+            let mut rows = Vec::new();
+            self.add_limits(&lin, &self.columns(&place, &lin), 1.0 - ROOM, &mut rows);
+            for (limit, row) in rows {
+                let one = worst.entry((place.piece, limit)).or_insert_with(|| row.clone());
+                if row.bound < one.bound {
+                    *one = row;
+                }
+            }
+        }
+        let mut rows = worst.into_values().collect();
+        self.add_polygon(stream, 1.0 - ROOM, &mut rows);
+        rows
+    }
+
+    /// The samples of a stream at which a limit is used beyond the share `beyond`, and with `costs`
+    /// those of the integrals.
+    fn linearised(&self, stream: &Stream, beyond: f64, costs: bool) -> Vec<(Place, Linearised)> {
+        let mut near = 0;
+        let limit = self.plant.torque_limit();
+        let mut samples = Vec::new();
+        for place in places(stream, |piece| self.plant.steps(piece)) {
+            let mut lin = self.shares(&place, &mut near);
+            let loaded = (0..DOF).any(|j| lin.torque[j].abs() > beyond * limit[j]);
+            let limited = loaded || lin.path.iter().any(|share| *share > beyond);
+            if limited || (costs && place.seconds > 0.0) {
+                self.linearise(&place, near, beyond, &mut lin);
+                samples.push((place, lin));
+            }
+        }
+        samples
+    }
+
     /// Adds the limits of the polygon of the points.
-    fn add_polygon(&self, stream: &Stream, model: &mut Quadratic) {
+    fn add_polygon(&self, stream: &Stream, beyond: f64, rows: &mut Vec<Row>) {
         let mut near = 0;
         for (i, edge) in stream.polygon().enumerate() {
             for tau in EDGE_PLACES {
                 let (q, _, _) = edge.at(tau);
                 let share = self.plant.polygon_share(&q, &mut near);
-                if share <= NEAR {
+                if share <= beyond {
                     continue;
                 }
                 let mut weights = Vec::new();
@@ -216,13 +252,13 @@ impl<'a, P: Plant> PolishProblem<'a, P> {
                         weights.extend(index.map(|index| (index, weight * slope)));
                     }
                 }
-                model.add_share(share, weights.into_iter());
+                rows.push(share_row(share, weights.into_iter()));
             }
         }
     }
 
-    /// Adds the costs and limits at a place to the model.
-    fn add_place(&self, place: &Place, lin: &Linearised, model: &mut Quadratic) {
+    /// The derivatives of the quantities at a place by the variables.
+    fn columns(&self, place: &Place, lin: &Linearised) -> Vec<Column> {
         let weights = self.points.knots.weights(place.piece, place.tau);
         let mut columns = Vec::new();
         for (k, i) in weights.support.clone().enumerate() {
@@ -240,6 +276,20 @@ impl<'a, P: Plant> PolishProblem<'a, P> {
                     columns.push(Column { index, joint: *joint, w, w1, torque, path });
                 }
             }
+        }
+        columns
+    }
+
+    /// Adds the costs at a place to the model.
+    fn add_costs(
+        &self,
+        place: &Place,
+        lin: &Linearised,
+        columns: &[Column],
+        model: &mut Quadratic,
+    ) {
+        if place.seconds <= 0.0 {
+            return;
         }
         let per = place.seconds / self.unit;
         let (offset, along) = self.offset(place);
@@ -272,18 +322,29 @@ impl<'a, P: Plant> PolishProblem<'a, P> {
                 model.matrix.add(a.index, b.index, curve);
             }
         }
-        self.add_brakes(place, lin, &columns, model);
+        self.add_brakes(place, lin, columns, model);
+    }
+
+    /// Adds rows for the limits that are used beyond a share at a place, with the index of the limit.
+    fn add_limits(
+        &self,
+        lin: &Linearised,
+        columns: &[Column],
+        beyond: f64,
+        rows: &mut Vec<(usize, Row)>,
+    ) {
         let limit = self.plant.torque_limit();
         for j in 0..DOF {
             let share = lin.torque[j] / limit[j];
-            if share.abs() > NEAR {
+            if share.abs() > beyond {
                 let sign = share.signum();
                 let weights = columns.iter().map(|c| (c.index, sign * c.torque[j] / limit[j]));
-                model.add_share(share.abs(), weights);
+                rows.push((j, share_row(share.abs(), weights)));
             }
         }
-        for (limit, share) in lin.path.iter().enumerate().filter(|(_, share)| **share > NEAR) {
-            model.add_share(*share, columns.iter().map(|c| (c.index, c.path[limit])));
+        for (limit, share) in lin.path.iter().enumerate().filter(|(_, share)| **share > beyond) {
+            let weights = columns.iter().map(|c| (c.index, c.path[limit]));
+            rows.push((DOF + limit, share_row(*share, weights)));
         }
     }
 
@@ -395,12 +456,9 @@ pub(super) struct Quadratic {
     pub(super) broken: f64,
 }
 
-impl Quadratic {
-    /// Adds a share of a limit with its derivatives by the variables.
-    fn add_share(&mut self, share: f64, weights: impl Iterator<Item = (usize, f64)>) {
-        let terms = weights.collect();
-        self.shares.push(Row { terms, bound: 1.0 - ROOM - share, price: VIOLATION_PRICE });
-    }
+/// A share of a limit with its derivatives by the variables, as a priced row.
+fn share_row(share: f64, weights: impl Iterator<Item = (usize, f64)>) -> Row {
+    Row { terms: weights.collect(), bound: 1.0 - ROOM - share, price: VIOLATION_PRICE }
 }
 
 /// The largest power of a joint, W.

@@ -5,6 +5,7 @@ use super::margins::Margins;
 use super::plant::{LEAST_STEPS, PathShares, Plant};
 use super::robot_plant::{smooth_torque, smooth_torque_derivatives};
 use super::run_problem::RunProblem;
+use super::smoothed::Smoothed;
 use crate::arm::kinematics::fk;
 use crate::retime::motion::stream::Piece;
 use crate::retime::path::joint_path::{DOF, Joints};
@@ -16,8 +17,8 @@ pub(super) const LONGEST_STEP: f64 = 0.004;
 pub(super) struct RunPlant<'a> {
     pub(super) problem: &'a RunProblem<'a>,
     pub(super) margins: &'a Margins,
-    /// TCP speed ceilings at the places of the corridor, m/s.
-    pub(super) ceilings: Vec<f64>,
+    /// Limits along the corridor.
+    pub(super) smoothed: Smoothed,
 }
 
 impl Plant for RunPlant<'_> {
@@ -52,22 +53,19 @@ impl Plant for RunPlant<'_> {
         let task = self.problem.task;
         let tool = &task.run.legs[0].tool;
         let pose = tool.pose(&fk(task.model, q));
-        let (distance, ceiling) = self.problem.corridor.locate(&pose, &self.ceilings, place);
-        let rate = tool.twist(task.model, q, qd);
-        let [tcp, joints] = [
-            rate.fixed_rows::<3>(0).norm() / ceiling,
-            self.problem.corridor.ceiling(*place).share(qd),
-        ]
-        .map(|share| share / self.margins.speed);
+        let at = self.problem.corridor.locate(&pose, place);
+        let speed = tool.twist(task.model, q, qd).fixed_rows::<3>(0).norm();
+        let [tcp, joints, distance] = self.smoothed.shares(&at, speed, qd);
         let body = self.problem.body.as_ref();
         let near = body.map_or(0.0, |body| keep_out::share(body, q, self.margins.room));
-        [tcp, joints, distance / self.margins.distance, near]
+        let speeds = [tcp, joints].map(|share| share / self.margins.speed);
+        [speeds[0], speeds[1], distance / self.margins.distance, near]
     }
 
     fn polygon_share(&self, q: &Joints, place: &mut usize) -> f64 {
         let task = self.problem.task;
         let pose = task.run.legs[0].tool.pose(&fk(task.model, q));
-        let distance = self.problem.corridor.polygon_share(&pose, place);
+        let distance = self.smoothed.polygon_share(&self.problem.corridor.locate(&pose, place));
         let body = self.problem.body.as_ref();
         let near = body.map_or(0.0, |body| keep_out::share(body, q, self.margins.room));
         near.max(distance / self.margins.edges)

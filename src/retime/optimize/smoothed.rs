@@ -1,0 +1,85 @@
+//! The limits of a stream along its path without steps.
+//!
+//! At a corner the ceilings and tolerances of two movements meet. With a step there, a limit would
+//! jump when a sample passes the corner, and no derivative predicts that. Each limit rises from the
+//! smaller value at a bounded rate, so that a smoothed limit is never above the limit itself.
+
+use crate::retime::path::joint_path::{DOF, Joints};
+
+/// Assumed TCP acceleration between two speed ceilings, m/s².
+const EASING: f64 = 10.0;
+/// Rise of a ceiling of a joint speed, rad/s per m.
+const JOINT_RISE: f64 = 20.0;
+/// Rise of a tolerance, m/m.
+const WIDENING: f64 = 0.2;
+
+/// Limits at the places of a corridor.
+pub(super) struct Smoothed {
+    tcp: Vec<f64>,
+    joints: [Vec<f64>; DOF],
+    tolerance: Vec<f64>,
+    polygon: Vec<f64>,
+}
+
+/// A position between two places of a corridor.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Located {
+    /// The nearest place, and a neighbour.
+    pub(super) place: usize,
+    pub(super) next: usize,
+    /// Position between them, 0 to 1.
+    pub(super) share: f64,
+    /// Distance from the path, m.
+    pub(super) distance: f64,
+}
+
+impl Located {
+    fn of(&self, values: &[f64]) -> f64 {
+        values[self.place] + self.share * (values[self.next] - values[self.place])
+    }
+}
+
+impl Smoothed {
+    /// The limits at the places with these distances `ways` (m) between them: speeds of the TCP
+    /// (m/s) and the joints (rad/s), tolerances of the path and of the polygon (m).
+    pub(super) fn new(
+        ways: &[f64],
+        tcp: Vec<f64>,
+        joints: [Vec<f64>; DOF],
+        tolerance: Vec<f64>,
+        polygon: Vec<f64>,
+    ) -> Smoothed {
+        let widening = |from: f64, way: f64| from + WIDENING * way;
+        Smoothed {
+            tcp: risen(tcp, ways, |from, way| (from * from + 2.0 * EASING * way).sqrt()),
+            joints: joints.map(|of| risen(of, ways, |from, way| from + JOINT_RISE * way)),
+            tolerance: risen(tolerance, ways, widening),
+            polygon: risen(polygon, ways, widening),
+        }
+    }
+
+    /// Used shares of the TCP speed, of the joint speeds and of the distance from the path.
+    pub(super) fn shares(&self, at: &Located, tcp: f64, qd: &Joints) -> [f64; 3] {
+        let joint =
+            |j: usize| if qd[j] == 0.0 { 0.0 } else { qd[j].abs() / at.of(&self.joints[j]) };
+        let joints = (0..DOF).map(joint).fold(0.0, f64::max);
+        [tcp / at.of(&self.tcp), joints, at.distance / at.of(&self.tolerance)]
+    }
+
+    /// Used share of the distance of the polygon from the path.
+    pub(super) fn polygon_share(&self, at: &Located) -> f64 {
+        at.distance / at.of(&self.polygon)
+    }
+}
+
+/// The largest values below the given ones that rise no faster than `rise` says, which returns the
+/// value after a way (m).
+fn risen(mut values: Vec<f64>, ways: &[f64], rise: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+    for (i, way) in ways.iter().enumerate() {
+        values[i + 1] = values[i + 1].min(rise(values[i], *way));
+    }
+    for (i, way) in ways.iter().enumerate().rev() {
+        values[i] = values[i].min(rise(values[i + 1], *way));
+    }
+    values
+}
