@@ -214,10 +214,17 @@ impl Corridor {
             first_least(range.map(|i| (square(&self.places[i]), i)), 0).1
         };
         let last = self.places.len() - 1;
-        let window = from.saturating_sub(2 * STRIDE)..=(*from + AHEAD).min(last);
-        let coarse = nearest(&mut window.step_by(STRIDE));
-        *from = nearest(&mut (coarse.saturating_sub(STRIDE)..=(coarse + STRIDE).min(last)));
-        *from
+        let around = |i: usize| i.saturating_sub(STRIDE)..=(i + STRIDE).min(last);
+        let fine = around(*from);
+        let (begin, end) = (*fine.start(), *fine.end());
+        let mut best = nearest(&mut fine.into_iter());
+        // At the end of the window a nearer place may follow.
+        if (best == begin && begin > 0) || (best == end && end < last) {
+            let window = from.saturating_sub(2 * STRIDE)..=(*from + AHEAD).min(last);
+            best = nearest(&mut around(nearest(&mut window.step_by(STRIDE))));
+        }
+        *from = best;
+        best
     }
 
     /// Distance of a pose from the path stretches before and after a place, m.

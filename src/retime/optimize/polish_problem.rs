@@ -26,7 +26,7 @@ const DEVIATION_PRICE: f64 = 0.02;
 /// Price of an excess of 1, in units of the initial energy.
 const VIOLATION_PRICE: f64 = 5.0;
 /// Share of its limit from which a row is in a program.
-const NEAR: f64 = 0.75;
+const NEAR: f64 = 0.9;
 /// Unit of the variables, rad.
 pub(super) const UNIT: f64 = 0.01;
 /// Smallest tolerance, m.
