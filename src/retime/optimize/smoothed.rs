@@ -83,3 +83,47 @@ fn risen(mut values: Vec<f64>, ways: &[f64], rise: impl Fn(f64, f64) -> f64) -> 
     }
     values
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ROUNDING: f64 = 1e-12;
+
+    #[test]
+    fn a_limit_rises_slowly_from_the_smaller_values_and_is_never_above() {
+        let way = 0.002;
+        let ways = [way; 9];
+        let values = vec![5.0, 5.0, 5.0, 1.0, 1.0, 5.0, 5.0, 5.0, 1.004, 5.0];
+        let smoothed = risen(values.clone(), &ways, |from, way| from + 1000.0 * way);
+        for (smoothed, value) in smoothed.iter().zip(&values) {
+            assert!(smoothed <= value);
+        }
+        for pair in smoothed.windows(2) {
+            assert!((pair[1] - pair[0]).abs() <= 1000.0 * way + ROUNDING, "{smoothed:?}");
+        }
+        let least = [3, 4, 8];
+        assert!(least.iter().all(|i| smoothed[*i] == values[*i]), "{smoothed:?}");
+    }
+
+    #[test]
+    fn a_share_has_no_step_between_two_places() {
+        let ways = [0.002; 2];
+        let limits = Smoothed::new(
+            &ways,
+            vec![1.0, 1.0, 0.1],
+            std::array::from_fn(|_| vec![2.0; 3]),
+            vec![0.005, 0.005, 0.001],
+            vec![0.005; 3],
+        );
+        // From the middle of the second stretch the nearest place is another one.
+        let at = |place, next, share| Located { place, next, share, distance: 5e-4 };
+        let [before, after] =
+            [at(1, 2, 0.5), at(2, 1, 0.5)].map(|at| limits.shares(&at, 0.05, &[0.1; DOF]));
+        for (before, after) in before.iter().zip(after) {
+            assert!((before - after).abs() < ROUNDING, "{before} {after}");
+        }
+        let slow = limits.shares(&at(2, 1, 0.0), 0.05, &[0.1; DOF]);
+        assert!((slow[0] - 0.5).abs() < ROUNDING && (slow[2] - 0.5).abs() < ROUNDING, "{slow:?}");
+    }
+}
