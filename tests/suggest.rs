@@ -88,16 +88,19 @@ fn each_suggestion_saves_what_it_promises() {
     }
 }
 
+/// Whether a change with these words is suggested for a program.
+fn suggests(text: &str, words: &str) -> bool {
+    let folder = folder();
+    fs::write(folder.path().join("in/m.mod"), text).unwrap();
+    let result = json(folder.path(), &["optimize", "in", "--suggest", "--point-estimate"]);
+    let all = result["suggestions"].as_array().unwrap();
+    all.iter().any(|one| one["change"].as_str().unwrap().contains(words))
+}
+
 /// The way back of a program that ends elsewhere is not simulated, so where it begins stays.
 #[test]
 fn the_start_stays_if_the_program_ends_elsewhere() {
-    let shifts_home = |text: &str| {
-        let folder = folder();
-        fs::write(folder.path().join("in/m.mod"), text).unwrap();
-        let result = json(folder.path(), &["optimize", "in", "--suggest", "--point-estimate"]);
-        let all = result["suggestions"].as_array().unwrap();
-        all.iter().any(|one| one["change"].as_str().unwrap().contains("jHome shifted"))
-    };
+    let shifts_home = |text: &str| suggests(text, "jHome shifted");
     assert!(shifts_home(PROGRAM));
     let (begin, end) = PROGRAM.split_at(PROGRAM.rfind("MoveAbsJ jHome").unwrap());
     let (_, end) = end.split_once('\n').unwrap();
@@ -107,13 +110,7 @@ fn the_start_stays_if_the_program_ends_elsewhere() {
 /// A height that is also that of a place where an output is switched stays.
 #[test]
 fn places_of_outputs_stay() {
-    let has_height = |text: &str| {
-        let folder = folder();
-        fs::write(folder.path().join("in/m.mod"), text).unwrap();
-        let result = json(folder.path(), &["optimize", "in", "--suggest", "--point-estimate"]);
-        let all = result["suggestions"].as_array().unwrap();
-        all.iter().any(|one| one["change"].as_str().unwrap().contains("height"))
-    };
+    let has_height = |text: &str| suggests(text, "height");
     assert!(has_height(PROGRAM));
     let passed = "MoveJ Offs(pB,0,0,nHigh),v1000,z10,tGrip;\n";
     let stopped = "MoveJ Offs(pB,0,0,nHigh),v1000,fine,tGrip;\nSetDO doLook,1;\n";

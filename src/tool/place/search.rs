@@ -21,7 +21,7 @@ use crate::tool::retrofit::{Cell, Simulated, read_program};
 const ROUNDS: u32 = 6;
 /// Candidates of which each round looks at mean and deviation.
 const LOOKED_AT: usize = 1000;
-/// Energy of a candidate that is predicted to be late, of its own: it comes after the others.
+/// Factor on the predicted energy of a candidate whose cycle would be too long: the others come first.
 const LATE: f64 = 2.0;
 /// New candidates around the best one in each round.
 const NEAR: u32 = 200;
