@@ -6,7 +6,7 @@ use joulepath::retime::motion::stream::{DOF, Joints, Piece, Stream};
 use joulepath::retime::motion::timing::profile::Profile;
 use joulepath::retime::motion::timing::reachability::time_optimal;
 use joulepath::retime::optimize::path_energy::{EnergyModel, Sharing, evaluate};
-use joulepath::retime::optimize::plant::{PathShares, Plant, realise};
+use joulepath::retime::optimize::plant::{PathDerivatives, PathShares, Plant, realise};
 use joulepath::retime::optimize::polish_problem::PathPenalty;
 use joulepath::retime::optimize::stream_fit::{FittedStream, StreamFit, fit_stream};
 use joulepath::retime::optimize::stream_limits::StreamLimits;
@@ -320,6 +320,12 @@ impl Plant for Flywheel {
 
     fn path_shares(&self, _q: &Joints, qd: &Joints, _place: &mut usize) -> PathShares {
         [qd[0].abs() / self.ceiling, 0.0, 0.0, 0.0]
+    }
+
+    fn path_derivatives(&self, _q: &Joints, qd: &Joints, _place: usize) -> PathDerivatives {
+        let mut slopes = PathDerivatives::default();
+        slopes[0][1][0] = qd[0].signum() / self.ceiling;
+        slopes
     }
 }
 

@@ -18,8 +18,6 @@ use crate::retime::path::joint_path::Joints;
 
 /// Smallest number of points of a stream.
 const LEAST_POINTS: usize = 2;
-/// Assumed TCP acceleration between two speed ceilings, m/s².
-const EASING: f64 = 10.0;
 /// Largest distance of two points, as a share of the length that their zones cover.
 const ZONE_SHARE: f64 = 0.95;
 /// The share that is used when [`ZONE_SHARE`] is exceeded; other rules move the points too.
@@ -126,11 +124,8 @@ impl RunProblem<'_> {
     /// Polishes the stream, rounds its points to the digits of the emitted code and checks it.
     pub(super) fn realise(&self, fit: Fit, margins: &Margins) -> Result<Attempt, Reason> {
         let Fit { reference, stream } = fit;
-        let plant = RunPlant {
-            problem: self,
-            margins,
-            ceilings: self.corridor.smoothed_ceilings(margins.reach, EASING),
-        };
+        let plant =
+            RunPlant { problem: self, margins, smoothed: self.corridor.smoothed(margins.reach) };
         let penalty = PathPenalty { tolerance: self.free_distance(), lever: self.lever };
         let polished =
             polish_stream(&stream, &reference, &plant, &self.limits, &self.model, &penalty)

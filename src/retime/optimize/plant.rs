@@ -5,6 +5,8 @@ use crate::retime::motion::stream::{DOF, Joints, Piece, Stream};
 
 /// Used shares of the path limits.
 pub type PathShares = [f64; 4];
+/// Their derivatives by the joint angles and the joint speeds.
+pub type PathDerivatives = [[Joints; 2]; 4];
 
 /// The robot that executes a stream.
 pub trait Plant {
@@ -39,10 +41,20 @@ pub trait Plant {
         PathShares::default()
     }
 
+    /// The derivatives of [`path_shares`](Plant::path_shares), 1/rad and s/rad.
+    fn path_derivatives(&self, _q: &Joints, _qd: &Joints, _place: usize) -> PathDerivatives {
+        PathDerivatives::default()
+    }
+
     /// Share of the limits at a position on the polygon of the points: distance from the path and
     /// clearance to keep-out zones. `place` as above.
     fn polygon_share(&self, _q: &Joints, _place: &mut usize) -> f64 {
         0.0
+    }
+
+    /// The derivatives of [`polygon_share`](Plant::polygon_share), 1/rad.
+    fn polygon_derivatives(&self, _q: &Joints, _place: usize) -> Joints {
+        Joints::default()
     }
 
     /// Number of integration steps on a piece, even.

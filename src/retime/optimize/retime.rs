@@ -6,7 +6,7 @@
 use super::attempt::{Attempt, Fit};
 use super::energy_program::{EnergyBound, energy_bound, minimize_energy};
 use super::keep_out;
-use super::margins::{FIRST_DISTANCE, Margins};
+use super::margins::{Margins, SPACINGS};
 use super::reason::Reason;
 pub use super::run_problem::Task;
 use super::run_problem::{INTERVALS, RunProblem, fastest_profile};
@@ -65,6 +65,8 @@ const BOUND_ROUNDING: f64 = 1e-5;
 const NEARLY: f64 = 2.0;
 /// Smallest saving that is worth a stream, as a share of the motion energy.
 const WORTHWHILE: f64 = 1e-3;
+/// Share of the motion energy within which a stream is near its lower bound.
+const NEAR_BOUND: f64 = 0.01;
 /// Largest share of the energy that further polishing may still save.
 const HOPELESS: f64 = 0.05;
 /// Smallest search step for slow motions, as a share of their duration.
@@ -155,7 +157,35 @@ impl RunProblem<'_> {
     fn least_energy(&self, time: f64, worth: f64) -> Result<Retiming, Reason> {
         let budget = round_down(time - self.task.run.settling);
         let bound = self.bound(budget);
-        let mut margins = Margins::first(self.tolerance());
+        let with = |spacing: f64| {
+            let margins = Margins::first(self.tolerance(), spacing);
+            self.least_energy_with(margins, budget, worth, bound.as_ref())
+        };
+        let [few, many] = SPACINGS;
+        let few = with(few);
+        let near = |retiming: &Retiming| {
+            let energy =
+                retiming.energy.energy_j() - NEAR_BOUND * retiming.energy.motion_energy_j();
+            energy < retiming.lower_bound_j
+        };
+        match few {
+            Ok(few) if near(&few) => Ok(few),
+            Ok(few) => match with(many) {
+                Ok(many) if many.energy.energy_j() < few.energy.energy_j() => Ok(many),
+                _ => Ok(few),
+            },
+            Err(reason) => with(many).or(Err(reason)),
+        }
+    }
+
+    /// The same with these margins in the first attempt; without settling.
+    fn least_energy_with(
+        &self,
+        mut margins: Margins,
+        budget: f64,
+        worth: f64,
+        bound: Option<&EnergyBound>,
+    ) -> Result<Retiming, Reason> {
         let mut problem = None;
         let mut begun: Option<Fit> = None;
         let mut worst = NEARLY;
@@ -163,7 +193,7 @@ impl RunProblem<'_> {
         for _ in 0..ATTEMPTS {
             let fit = begun.take().map_or_else(
                 || {
-                    let program = self.least_energy_program(budget, &margins, bound.as_ref());
+                    let program = self.least_energy_program(budget, &margins, bound);
                     is_tight |= matches!(program, Err(Reason::NoSaving));
                     program.or_else(|reason| self.fit_original(reason, budget, &margins))
                 },
@@ -184,11 +214,9 @@ impl RunProblem<'_> {
                         return Err(Reason::NoSaving);
                     }
                     problem = Some(attempt.check.fault());
-                    let share = margins.worst(&attempt.check);
+                    let share = attempt.check.worst();
                     if share < worst {
-                        // From now on polishing also limits the polygon.
-                        let is_new = margins.edges.is_infinite() && attempt.check.polygon > 1.0;
-                        worst = if is_new { f64::INFINITY } else { share };
+                        worst = share;
                         margins.tighten_a_little(&attempt.check);
                         begun = Some(attempt.fit);
                     } else {
@@ -237,7 +265,7 @@ impl RunProblem<'_> {
 
     /// Least time: the fastest profile, lengthened until it keeps the jerk limit.
     fn least_time(&self) -> Result<Retiming, Reason> {
-        let mut margins = Margins { edges: FIRST_DISTANCE, ..Margins::first(self.tolerance()) };
+        let mut margins = Margins::first(self.tolerance(), SPACINGS[0]);
         let ramp = self.task.model.controller.ramp_s.unwrap_or(0.1);
         let mut problem = None;
         for _ in 0..ATTEMPTS {
