@@ -7,7 +7,7 @@ use super::reason::Reason;
 use super::run_plant::RunPlant;
 use super::run_problem::RunProblem;
 use super::stream_fit::{StreamFit, fit_stream};
-use super::stream_polish::polish_stream;
+use super::stream_polish::{Until, polish_stream};
 use super::stream_reference::Reference;
 use super::stream_rounding::{round_down, rounded_intervals, rounded_points};
 use super::stream_spacing::{Spacing, adaptive_intervals};
@@ -34,6 +34,7 @@ pub(super) struct Attempt {
 }
 
 /// A reference motion and a stream that approximates it.
+#[derive(Clone)]
 pub(super) struct Fit {
     reference: Reference,
     stream: Stream,
@@ -122,14 +123,19 @@ impl RunProblem<'_> {
     }
 
     /// Polishes the stream, rounds its points to the digits of the emitted code and checks it.
-    pub(super) fn realise(&self, fit: Fit, margins: &Margins) -> Result<Attempt, Reason> {
+    pub(super) fn realise(
+        &self,
+        fit: Fit,
+        margins: &Margins,
+        until: Until,
+    ) -> Result<Attempt, Reason> {
         let Fit { reference, stream } = fit;
         let plant =
             RunPlant { problem: self, margins, smoothed: self.corridor.smoothed(margins.reach) };
         let penalty = PathPenalty { tolerance: self.free_distance(), lever: self.lever };
-        let polished =
-            polish_stream(&stream, &reference, &plant, &self.limits, &self.model, &penalty)
-                .map_err(|error| Reason::NoStream(error.to_string()))?;
+        let (limits, model) = (&self.limits, &self.model);
+        let polished = polish_stream(&stream, &reference, &plant, limits, model, &penalty, until)
+            .map_err(|error| Reason::NoStream(error.to_string()))?;
         let rounded = rounded_points(&polished.stream)
             .map_err(|error| Reason::NoStream(error.to_string()))?;
         let check = self.check(&rounded);

@@ -10,12 +10,14 @@ use super::margins::{Margins, SPACINGS};
 use super::reason::Reason;
 pub use super::run_problem::Task;
 use super::run_problem::{INTERVALS, RunProblem, fastest_profile};
+use super::stream_polish::Until;
 use super::stream_rounding::{quantum, round_down, round_up, rounded_intervals};
 use crate::arm::dynamics::potential_energy;
 use crate::retime::energy::power::motion_energy;
 use crate::retime::energy::{EnergyParts, account};
 use crate::retime::motion::stream::Stream;
 use crate::retime::motion::timed::TimedMotion;
+use crate::retime::motion::timing::profile::Profile;
 use crate::retime::path::joint_path::{DOF, Joints};
 
 /// The required time of a run, with settling.
@@ -71,8 +73,10 @@ const NEAR_BOUND: f64 = 0.01;
 const HOPELESS: f64 = 0.05;
 /// Smallest search step for slow motions, as a share of their duration.
 const SLOW_STEP: f64 = 0.02;
-/// Time added to the fastest profile in the search for the fastest stream, in ramp times.
-const RAMP_SHARES: [f64; 8] = [0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.3, 1.8];
+/// Largest time added to the fastest profile in the search for the fastest stream, in ramp times, and
+/// the smaller ones.
+const LONGEST: f64 = 1.8;
+const SHORTER: [f64; 7] = [0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.3];
 
 /// The stream of a run.
 ///
@@ -199,7 +203,7 @@ impl RunProblem<'_> {
                 },
                 Ok,
             );
-            let outcome = fit.and_then(|fit| self.realise(fit, &margins));
+            let outcome = fit.and_then(|fit| self.realise(fit, &margins, Until::Least));
             match outcome {
                 Ok(attempt) if attempt.check.holds() => {
                     let bound = bound.map(|bound| bound.lower_bound);
@@ -266,33 +270,51 @@ impl RunProblem<'_> {
     /// Least time: the fastest profile, lengthened until it keeps the jerk limit.
     fn least_time(&self) -> Result<Retiming, Reason> {
         let mut margins = Margins::first(self.tolerance(), SPACINGS[0]);
-        let ramp = self.task.model.controller.ramp_s.unwrap_or(0.1);
-        let mut problem = None;
+        let mut problem = Reason::NoStream(String::new());
         for _ in 0..ATTEMPTS {
             let (grid, limits) = self.grid(&margins, INTERVALS)?;
             let fast = fastest_profile(&grid, &limits)?;
-            let mut best: Option<Attempt> = None;
-            let step = ramp.max(SLOW_STEP * fast.duration());
-            for share in RAMP_SHARES {
-                let budget = round_up(fast.duration() + share * step);
-                let fit = self.fit_profile(&fast, budget, &margins);
-                match fit.and_then(|fit| self.realise(fit, &margins)) {
-                    Ok(attempt) if attempt.check.holds() => {
-                        return Ok(self.retiming(attempt.stream, None));
-                    }
-                    Ok(attempt) => {
-                        problem = Some(Reason::NoStream(attempt.check.fault()));
-                        best = Some(attempt);
-                    }
-                    Err(reason) => problem = Some(reason),
+            match self.lengthened(&fast, LONGEST, &margins) {
+                Ok(attempt) if attempt.check.holds() => {
+                    let attempt = self.least_lengthened(&fast, attempt, &margins);
+                    return Ok(self.retiming(attempt.stream, None));
+                }
+                Ok(attempt) => {
+                    problem = Reason::NoStream(attempt.check.fault());
+                    margins.tighten(&attempt.check);
+                }
+                Err(reason) => {
+                    problem = reason;
+                    margins.lighten();
                 }
             }
-            match best {
-                Some(attempt) => margins.tighten(&attempt.check),
-                None => margins.lighten(),
-            }
         }
-        Err(problem.unwrap_or_else(|| Reason::NoStream(String::new())))
+        Err(problem)
+    }
+
+    /// A stream that takes longer than the fastest profile by a share of a ramp, and its limits.
+    fn lengthened(&self, fast: &Profile, share: f64, margins: &Margins) -> Result<Attempt, Reason> {
+        let ramp = self.task.model.controller.ramp_s.unwrap_or(0.1);
+        let step = ramp.max(SLOW_STEP * fast.duration());
+        let fit = self.fit_profile(fast, round_up(fast.duration() + share * step), margins)?;
+        self.realise(fit, margins, Until::Kept)
+    }
+
+    /// The shortest lengthened stream that keeps its limits, with the least energy; `longest` if all
+    /// shorter ones fail.
+    fn least_lengthened(&self, fast: &Profile, longest: Attempt, margins: &Margins) -> Attempt {
+        let mut found = longest;
+        let _ = SHORTER.partition_point(|share| match self.lengthened(fast, *share, margins) {
+            Ok(attempt) if attempt.check.holds() => {
+                found = attempt;
+                false
+            }
+            _ => true,
+        });
+        match self.realise(found.fit.clone(), margins, Until::Least) {
+            Ok(polished) if polished.check.holds() => polished,
+            _ => found,
+        }
     }
 
     /// The fastest stream, slowed to the given time.

@@ -20,7 +20,7 @@ use crate::retime::motion::stream::{Stream, StreamError};
 /// Outcome of polishing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PolishStatus {
-    /// No further step lowers the energy.
+    /// The stream is as good as was asked for, or no step makes it better.
     Converged,
     /// The iteration limit was reached.
     Stopped,
@@ -59,6 +59,15 @@ const ENOUGH: f64 = 0.05;
 /// Tried parts of a proposed step.
 const PARTS: [f64; 4] = [1.0, 0.4, 0.15, 0.05];
 
+/// When the search for a better stream ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Until {
+    /// All limits are kept.
+    Kept,
+    /// All limits are kept and no further step lowers the energy.
+    Least,
+}
+
 /// Lowers the energy of `stream`, which has the ends of `reference` and keeps `limits`.
 ///
 /// # Errors
@@ -70,10 +79,11 @@ pub fn polish_stream(
     limits: &StreamLimits,
     model: &EnergyModel,
     penalty: &PathPenalty,
+    until: Until,
 ) -> Result<Polished, StreamError> {
     let problem = PolishProblem::new(stream, reference, plant, model, penalty)?;
     let rows = problem.points.limit_rows(limits);
-    let polish = Polish { problem, limits, rows };
+    let polish = Polish { problem, limits, rows, until };
     let mut best = polish.candidate(stream.clone());
     let status = polish.improve(&mut best)?;
     Ok(Polished {
@@ -104,6 +114,7 @@ struct Polish<'a, P> {
     limits: &'a StreamLimits,
     /// The joint limits as rows.
     rows: Vec<LimitRow>,
+    until: Until,
 }
 
 impl<P: Plant> Polish<'_, P> {
@@ -115,6 +126,9 @@ impl<P: Plant> Polish<'_, P> {
         let mut damping = DAMPING;
         let mut model = self.quadratic(best);
         for _ in 0..MAX_STEPS {
+            if self.until == Until::Kept && best.realised.excess <= 0.0 {
+                return Ok(PolishStatus::Converged);
+            }
             let Some(step) = self.step(best, &model, damping)? else {
                 return Ok(PolishStatus::Converged);
             };
