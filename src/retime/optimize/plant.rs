@@ -3,10 +3,12 @@
 use super::path_energy::{EnergyModel, EnergyParts};
 use crate::retime::motion::stream::{DOF, Joints, Piece, Stream};
 
+/// Number of the limits that [`Plant::path_shares`] returns.
+const PATH_LIMITS: usize = 4;
 /// Used shares of the path limits.
-pub type PathShares = [f64; 4];
+pub type PathShares = [f64; PATH_LIMITS];
 /// Their derivatives by the joint angles and the joint speeds.
-pub type PathDerivatives = [[Joints; 2]; 4];
+pub type PathDerivatives = [[Joints; 2]; PATH_LIMITS];
 
 /// The robot that executes a stream.
 pub trait Plant {
@@ -93,7 +95,7 @@ pub struct Realised {
     pub energy: EnergyParts,
     /// The largest used share of a torque or path limit.
     pub worst_share: f64,
-    /// Sum over the samples of the excess of shares over 1 − `ROOM`.
+    /// Sum over the pieces and the limits of the largest excess of a share over 1 − `ROOM`.
     pub excess: f64,
 }
 
@@ -106,6 +108,7 @@ pub fn realise(stream: &Stream, plant: &impl Plant, model: &EnergyModel) -> Real
     for piece in stream.pieces() {
         let steps = plant.steps(&piece);
         let step = piece.length / steps as f64;
+        let mut excess = [0.0f64; DOF + PATH_LIMITS];
         for i in 0..=steps {
             let (q, qd, qdd) = piece.at(i as f64 * step);
             let ends = i == 0 || i == steps;
@@ -119,9 +122,9 @@ pub fn realise(stream: &Stream, plant: &impl Plant, model: &EnergyModel) -> Real
             sum.drive += seconds * model.braked(&power);
             let path = plant.path_shares(&q, &qd, &mut place);
             let loads = (0..DOF).map(|j| torque[j].abs() / limit[j]);
-            for share in path.into_iter().chain(loads) {
+            for (share, excess) in path.into_iter().chain(loads).zip(&mut excess) {
                 out.worst_share = out.worst_share.max(share);
-                out.excess += (share - (1.0 - ROOM)).max(0.0);
+                *excess = excess.max(share - (1.0 - ROOM));
             }
             for j in 0..DOF {
                 sum.mechanical += seconds * model.work * smooth[j] * qd[j];
@@ -130,6 +133,7 @@ pub fn realise(stream: &Stream, plant: &impl Plant, model: &EnergyModel) -> Real
                 sum.copper += seconds * model.loss[j] * torque[j] * torque[j];
             }
         }
+        out.excess += excess.iter().sum::<f64>();
     }
     let mut place = 0;
     for edge in stream.polygon() {

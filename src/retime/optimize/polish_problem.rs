@@ -61,6 +61,9 @@ pub(super) struct PolishProblem<'a, P> {
     dry: Joints,
 }
 
+/// The row of the largest share of each limit on each piece of a stream.
+type WorstRows = BTreeMap<(usize, usize), Row>;
+
 /// Torque, shares of the path limits and their derivatives at one place. `torque_by[kind][i]` is
 /// the derivative by q, q̇ or q̈ of joint i.
 struct Linearised {
@@ -172,30 +175,22 @@ impl<'a, P: Plant> PolishProblem<'a, P> {
             shares: Vec::new(),
             broken: VIOLATION_PRICE * excess,
         };
+        let mut worst = WorstRows::default();
         for (place, lin) in self.linearised(stream, NEAR, true) {
             let columns = self.columns(&place, &lin);
             self.add_costs(&place, &lin, &columns, &mut model);
-            let mut rows = Vec::new();
-            self.add_limits(&lin, &columns, NEAR, &mut rows);
-            model.shares.extend(rows.into_iter().map(|(_, row)| row));
+            self.add_limits(&place, &lin, &columns, NEAR, &mut worst);
         }
+        model.shares = worst.into_values().collect();
         self.add_polygon(stream, NEAR, &mut model.shares);
         model
     }
 
-    /// The limits that a stream exceeds, as rows in the change of the variables from it: of each
-    /// limit the worst sample on each piece.
+    /// The limits that a stream exceeds, as rows in the change of the variables from it.
     pub(super) fn exceeded(&self, stream: &Stream) -> Vec<Row> {
-        let mut worst: BTreeMap<(usize, usize), Row> = BTreeMap::new();
+        let mut worst = WorstRows::default();
         for (place, lin) in self.linearised(stream, 1.0 - ROOM, false) {
-            let mut rows = Vec::new();
-            self.add_limits(&lin, &self.columns(&place, &lin), 1.0 - ROOM, &mut rows);
-            for (limit, row) in rows {
-                let one = worst.entry((place.piece, limit)).or_insert_with(|| row.clone());
-                if row.bound < one.bound {
-                    *one = row;
-                }
-            }
+            self.add_limits(&place, &lin, &self.columns(&place, &lin), 1.0 - ROOM, &mut worst);
         }
         let mut rows = worst.into_values().collect();
         self.add_polygon(stream, 1.0 - ROOM, &mut rows);
@@ -339,26 +334,30 @@ impl<'a, P: Plant> PolishProblem<'a, P> {
         (lost * (power / root - 1.0), lost * (self.round_power / root).powi(2) / root)
     }
 
-    /// Adds rows for the limits that are used beyond a share at a place, with the index of the limit.
+    /// Adds rows for the limits that are used beyond a share at a place, if no place of the same piece
+    /// uses more.
     fn add_limits(
         &self,
+        place: &Place,
         lin: &Linearised,
         columns: &[Column],
         beyond: f64,
-        rows: &mut Vec<(usize, Row)>,
+        worst: &mut WorstRows,
     ) {
         let limit = self.plant.torque_limit();
-        for j in 0..DOF {
-            let share = lin.torque[j] / limit[j];
-            if share.abs() > beyond {
-                let sign = share.signum();
-                let weights = columns.iter().map(|c| (c.index, sign * c.torque[j] / limit[j]));
-                rows.push((j, share_row(share.abs(), weights)));
+        let torques = (0..DOF).map(|j| lin.torque[j] / limit[j]);
+        for (n, share) in torques.chain(lin.path).enumerate() {
+            let bound = 1.0 - ROOM - share.abs();
+            let known = worst.get(&(place.piece, n));
+            if share.abs() <= beyond || known.is_some_and(|row| row.bound <= bound) {
+                continue;
             }
-        }
-        for (limit, share) in lin.path.iter().enumerate().filter(|(_, share)| **share > beyond) {
-            let weights = columns.iter().map(|c| (c.index, c.path[limit]));
-            rows.push((DOF + limit, share_row(*share, weights)));
+            let weight = |c: &Column| match n.checked_sub(DOF) {
+                Some(path) => c.path[path],
+                None => share.signum() * c.torque[n] / limit[n],
+            };
+            let row = share_row(share.abs(), columns.iter().map(|c| (c.index, weight(c))));
+            worst.insert((place.piece, n), row);
         }
     }
 
