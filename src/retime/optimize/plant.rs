@@ -87,6 +87,14 @@ pub(super) const ROOM: f64 = 1e-3;
 /// Smallest number of integration steps on a piece; even for Simpson's rule.
 pub(super) const LEAST_STEPS: usize = 8;
 
+/// Stretches of a piece, of each of which the largest share of a limit counts.
+pub(super) const STRETCHES: usize = 3;
+
+/// The stretch of sample `i` of `steps`.
+pub(super) fn stretch(i: usize, steps: usize) -> usize {
+    (STRETCHES * i / steps).min(STRETCHES - 1)
+}
+
 /// Cost of the realised motion of a stream and its used shares of the limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Realised {
@@ -95,7 +103,7 @@ pub struct Realised {
     pub energy: EnergyParts,
     /// The largest used share of a torque or path limit.
     pub worst_share: f64,
-    /// Sum over the pieces and the limits of the largest excess of a share over 1 − `ROOM`.
+    /// Sum over the stretches and the limits of the largest excess of a share over 1 − `ROOM`.
     pub excess: f64,
 }
 
@@ -108,7 +116,7 @@ pub fn realise(stream: &Stream, plant: &impl Plant, model: &EnergyModel) -> Real
     for piece in stream.pieces() {
         let steps = plant.steps(&piece);
         let step = piece.length / steps as f64;
-        let mut excess = [0.0f64; DOF + PATH_LIMITS];
+        let mut excess = [[0.0f64; DOF + PATH_LIMITS]; STRETCHES];
         for i in 0..=steps {
             let (q, qd, qdd) = piece.at(i as f64 * step);
             let ends = i == 0 || i == steps;
@@ -122,7 +130,8 @@ pub fn realise(stream: &Stream, plant: &impl Plant, model: &EnergyModel) -> Real
             sum.drive += seconds * model.braked(&power);
             let path = plant.path_shares(&q, &qd, &mut place);
             let loads = (0..DOF).map(|j| torque[j].abs() / limit[j]);
-            for (share, excess) in path.into_iter().chain(loads).zip(&mut excess) {
+            for (share, excess) in path.into_iter().chain(loads).zip(&mut excess[stretch(i, steps)])
+            {
                 out.worst_share = out.worst_share.max(share);
                 *excess = excess.max(share - (1.0 - ROOM));
             }
@@ -133,7 +142,7 @@ pub fn realise(stream: &Stream, plant: &impl Plant, model: &EnergyModel) -> Real
                 sum.copper += seconds * model.loss[j] * torque[j] * torque[j];
             }
         }
-        out.excess += excess.iter().sum::<f64>();
+        out.excess += excess.as_flattened().iter().sum::<f64>();
     }
     let mut place = 0;
     for edge in stream.polygon() {

@@ -6,7 +6,8 @@ use super::banded::Banded;
 use super::banded_program::Row;
 use super::path_energy::{EnergyModel, Sharing};
 use super::plant::{
-    EDGE_PLACES, PathDerivatives, PathShares, Plant, ROOM, Realised, direction, realise,
+    EDGE_PLACES, PathDerivatives, PathShares, Plant, ROOM, Realised, STRETCHES, direction, realise,
+    stretch,
 };
 use super::stream_points::Points;
 use super::stream_reference::Reference;
@@ -61,7 +62,7 @@ pub(super) struct PolishProblem<'a, P> {
     dry: Joints,
 }
 
-/// The row of the largest share of each limit on each piece of a stream.
+/// The row of the largest share of each limit on each stretch of a piece of a stream.
 type WorstRows = BTreeMap<(usize, usize), Row>;
 
 /// Torque, shares of the path limits and their derivatives at one place. `torque_by[kind][i]` is
@@ -334,8 +335,8 @@ impl<'a, P: Plant> PolishProblem<'a, P> {
         (lost * (power / root - 1.0), lost * (self.round_power / root).powi(2) / root)
     }
 
-    /// Adds rows for the limits that are used beyond a share at a place, if no place of the same piece
-    /// uses more.
+    /// Adds rows for the limits that are used beyond a share at a place, if no place of the same
+    /// stretch uses more.
     fn add_limits(
         &self,
         place: &Place,
@@ -348,7 +349,7 @@ impl<'a, P: Plant> PolishProblem<'a, P> {
         let torques = (0..DOF).map(|j| lin.torque[j] / limit[j]);
         for (n, share) in torques.chain(lin.path).enumerate() {
             let bound = 1.0 - ROOM - share.abs();
-            let known = worst.get(&(place.piece, n));
+            let known = worst.get(&(place.stretch, n));
             if share.abs() <= beyond || known.is_some_and(|row| row.bound <= bound) {
                 continue;
             }
@@ -357,7 +358,7 @@ impl<'a, P: Plant> PolishProblem<'a, P> {
                 None => share.signum() * c.torque[n] / limit[n],
             };
             let row = share_row(share.abs(), columns.iter().map(|c| (c.index, weight(c))));
-            worst.insert((place.piece, n), row);
+            worst.insert((place.stretch, n), row);
         }
     }
 
@@ -376,6 +377,7 @@ impl<'a, P: Plant> PolishProblem<'a, P> {
 /// A sample of the realised motion.
 struct Place {
     piece: usize,
+    stretch: usize,
     /// Time in the piece, s; then the weight in the integral, s.
     tau: f64,
     seconds: f64,
@@ -400,7 +402,16 @@ fn places(stream: &Stream, steps: impl Fn(&Piece) -> usize) -> Vec<Place> {
                     _ => 0.0,
                 };
                 let seconds = weight * piece.length;
-                Place { piece: index, tau, seconds, t: piece.start + tau, q, qd, qdd }
+                Place {
+                    piece: index,
+                    stretch: STRETCHES * index + stretch(i, steps),
+                    tau,
+                    seconds,
+                    t: piece.start + tau,
+                    q,
+                    qd,
+                    qdd,
+                }
             })
             .collect::<Vec<Place>>()
     };
