@@ -34,7 +34,6 @@ pub(super) struct Attempt {
 }
 
 /// A reference motion and a stream that approximates it.
-#[derive(Clone)]
 pub(super) struct Fit {
     reference: Reference,
     stream: Stream,

@@ -96,7 +96,7 @@ impl Margins {
             self.spacing *= CLOSER;
         }
         if check.polygon > 1.0 {
-            self.polygon /= check.polygon;
+            self.polygon *= FIRST_DISTANCE / check.polygon;
             self.edges = FIRST_DISTANCE;
         }
     }

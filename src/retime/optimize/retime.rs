@@ -3,6 +3,8 @@
 //! The convex program on the path gives a reference motion. A stream is fitted to it and its
 //! realised motion is checked. If a limit is exceeded, the next attempt has tighter margins.
 
+use std::cell::Cell;
+
 use super::attempt::{Attempt, Fit};
 use super::energy_program::{EnergyBound, energy_bound, minimize_energy};
 use super::keep_out;
@@ -17,7 +19,6 @@ use crate::retime::energy::power::motion_energy;
 use crate::retime::energy::{EnergyParts, account};
 use crate::retime::motion::stream::Stream;
 use crate::retime::motion::timed::TimedMotion;
-use crate::retime::motion::timing::profile::Profile;
 use crate::retime::path::joint_path::{DOF, Joints};
 
 /// The required time of a run, with settling.
@@ -190,34 +191,46 @@ impl RunProblem<'_> {
         worth: f64,
         bound: Option<&EnergyBound>,
     ) -> Result<Retiming, Reason> {
-        let mut problem = None;
+        let is_tight = Cell::new(false);
+        let begin = |margins: &Margins| {
+            let program = self.least_energy_program(budget, margins, bound);
+            is_tight.set(is_tight.get() || matches!(program, Err(Reason::NoSaving)));
+            program.or_else(|reason| self.fit_original(reason, budget, margins))
+        };
+        // Tighter margins do not lower the energy; polishing lowers it slightly.
+        let hopeless = |attempt: &Attempt| {
+            let energy = self.moving(&attempt.stream).motion_energy_j();
+            energy - HOPELESS * energy.abs() >= worth
+        };
+        let attempt = self.attempts(&mut margins, Until::Least, &begin, &hopeless);
+        let attempt = attempt.map_err(|reason| match reason {
+            Reason::NoStream(_) if is_tight.get() => Reason::NoSaving,
+            reason => reason,
+        })?;
+        let retiming = self.retiming(attempt.stream, bound.map(|bound| bound.lower_bound));
+        let saves = retiming.energy.motion_energy_j() < worth;
+        if saves { Ok(retiming) } else { Err(Reason::NoSaving) }
+    }
+
+    /// Attempts at a stream that keeps all limits, from `begin` on with margins that each check
+    /// tightens. A hopeless one is not worth another.
+    fn attempts(
+        &self,
+        margins: &mut Margins,
+        until: Until,
+        begin: &dyn Fn(&Margins) -> Result<Fit, Reason>,
+        hopeless: &dyn Fn(&Attempt) -> bool,
+    ) -> Result<Attempt, Reason> {
+        let mut problem = String::new();
         let mut begun: Option<Fit> = None;
         let mut worst = NEARLY;
-        let mut is_tight = false;
         for _ in 0..ATTEMPTS {
-            let fit = begun.take().map_or_else(
-                || {
-                    let program = self.least_energy_program(budget, &margins, bound);
-                    is_tight |= matches!(program, Err(Reason::NoSaving));
-                    program.or_else(|reason| self.fit_original(reason, budget, &margins))
-                },
-                Ok,
-            );
-            let outcome = fit.and_then(|fit| self.realise(fit, &margins, Until::Least));
-            match outcome {
-                Ok(attempt) if attempt.check.holds() => {
-                    let bound = bound.map(|bound| bound.lower_bound);
-                    let retiming = self.retiming(attempt.stream, bound);
-                    let saves = retiming.energy.motion_energy_j() < worth;
-                    return if saves { Ok(retiming) } else { Err(Reason::NoSaving) };
-                }
+            let fit = begun.take().map_or_else(|| begin(margins), Ok);
+            match fit.and_then(|fit| self.realise(fit, margins, until)) {
+                Ok(attempt) if attempt.check.holds() => return Ok(attempt),
+                Ok(attempt) if hopeless(&attempt) => return Err(Reason::NoSaving),
                 Ok(attempt) => {
-                    // Tighter margins do not lower the energy; polishing lowers it slightly.
-                    let energy = self.moving(&attempt.stream).motion_energy_j();
-                    if energy - HOPELESS * energy.abs() >= worth {
-                        return Err(Reason::NoSaving);
-                    }
-                    problem = Some(attempt.check.fault());
+                    problem = attempt.check.fault();
                     let share = attempt.check.worst();
                     if share < worst {
                         worst = share;
@@ -230,12 +243,12 @@ impl RunProblem<'_> {
                 }
                 Err(Reason::NoStream(why)) => {
                     margins.lighten();
-                    problem = Some(why);
+                    problem = why;
                 }
                 Err(other) => return Err(other),
             }
         }
-        Err(if is_tight { Reason::NoSaving } else { Reason::NoStream(problem.unwrap_or_default()) })
+        Err(Reason::NoStream(problem))
     }
 
     /// The solution of the convex program and a stream fitted to it.
@@ -270,51 +283,32 @@ impl RunProblem<'_> {
     /// Least time: the fastest profile, lengthened until it keeps the jerk limit.
     fn least_time(&self) -> Result<Retiming, Reason> {
         let mut margins = Margins::first(self.tolerance(), SPACINGS[0]);
-        let mut problem = Reason::NoStream(String::new());
-        for _ in 0..ATTEMPTS {
-            let (grid, limits) = self.grid(&margins, INTERVALS)?;
-            let fast = fastest_profile(&grid, &limits)?;
-            match self.lengthened(&fast, LONGEST, &margins) {
+        let begin = |margins: &Margins| self.lengthened(LONGEST, margins);
+        let mut found = self.attempts(&mut margins, Until::Kept, &begin, &|_| false)?;
+        let _ = SHORTER.partition_point(|share| {
+            let fit = self.lengthened(*share, &margins);
+            match fit.and_then(|fit| self.realise(fit, &margins, Until::Kept)) {
                 Ok(attempt) if attempt.check.holds() => {
-                    let attempt = self.least_lengthened(&fast, attempt, &margins);
-                    return Ok(self.retiming(attempt.stream, None));
+                    found = attempt;
+                    false
                 }
-                Ok(attempt) => {
-                    problem = Reason::NoStream(attempt.check.fault());
-                    margins.tighten(&attempt.check);
-                }
-                Err(reason) => {
-                    problem = reason;
-                    margins.lighten();
-                }
+                _ => true,
             }
-        }
-        Err(problem)
+        });
+        let stream = match self.realise(found.fit, &margins, Until::Least) {
+            Ok(polished) if polished.check.holds() => polished.stream,
+            _ => found.stream,
+        };
+        Ok(self.retiming(stream, None))
     }
 
-    /// A stream that takes longer than the fastest profile by a share of a ramp, and its limits.
-    fn lengthened(&self, fast: &Profile, share: f64, margins: &Margins) -> Result<Attempt, Reason> {
+    /// A stream that takes longer than the fastest profile by a share of a ramp.
+    fn lengthened(&self, share: f64, margins: &Margins) -> Result<Fit, Reason> {
+        let (grid, limits) = self.grid(margins, INTERVALS)?;
+        let fast = fastest_profile(&grid, &limits)?;
         let ramp = self.task.model.controller.ramp_s.unwrap_or(0.1);
         let step = ramp.max(SLOW_STEP * fast.duration());
-        let fit = self.fit_profile(fast, round_up(fast.duration() + share * step), margins)?;
-        self.realise(fit, margins, Until::Kept)
-    }
-
-    /// The shortest lengthened stream that keeps its limits, with the least energy; `longest` if all
-    /// shorter ones fail.
-    fn least_lengthened(&self, fast: &Profile, longest: Attempt, margins: &Margins) -> Attempt {
-        let mut found = longest;
-        let _ = SHORTER.partition_point(|share| match self.lengthened(fast, *share, margins) {
-            Ok(attempt) if attempt.check.holds() => {
-                found = attempt;
-                false
-            }
-            _ => true,
-        });
-        match self.realise(found.fit.clone(), margins, Until::Least) {
-            Ok(polished) if polished.check.holds() => polished,
-            _ => found,
-        }
+        self.fit_profile(&fast, round_up(fast.duration() + share * step), margins)
     }
 
     /// The fastest stream, slowed to the given time.
