@@ -1,0 +1,1 @@
+cd /work/main; CARGO_PROFILE_RELEASE_LTO=off CARGO_PROFILE_RELEASE_DEBUG=0 CARGO_INCREMENTAL=1 cargo build --release --features internals --example savings --target-dir /tmp/relfast 2>&1 | grep -E "^error" -A9; time /tmp/relfast/release/examples/savings 2>/dev/null

@@ -1,0 +1,1 @@
+cd /work/main; bash /tmp/b.sh; (time timeout 300 /tmp/relfast/release/joulepath optimize fixtures/pick_place --point-estimate -q --format json > /tmp/pp2.json) 2>&1 | grep real; python3 /tmp/seg.py /tmp/pp2.json | grep -v "pts 0"
