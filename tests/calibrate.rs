@@ -153,27 +153,26 @@ fn calibrated_intervals_contain_the_truth_as_often_as_stated() {
     let other = simulated(&model, &source(OTHER));
     let spread = Spread::new(&model);
     let z = standard_normals(spread.latents.len(), TRUTHS, 4711);
-    // Energy and motion energy of the program, motion energy of another one.
-    let mut inside = [0; 3];
-    let mut points = 0;
-    for i in 0..TRUTHS {
+    let trial = |i: usize| {
         let truth = drawn(&model, &spread.robot(&model, |k| z[k][i])).unwrap();
         let log = log(&truth, &simulation, &Recording { seed: i as u64, ..METER });
         let found = calibrate(&model, &simulation, &log, None).unwrap();
         let there = account(&found.model, &other);
         let there = plausibility(&found.model, &other, &there).unwrap();
         let (own, beyond) = (account(&truth, &simulation).total, account(&truth, &other).total);
-        let checks = [
+        let point = account(&found.model, &simulation).total.energy_j();
+        // The energy of the robot as it is written, then energy and motion energy of the program and
+        // motion energy of another one.
+        [
+            holds(found.after.energy_j, point),
             holds(found.after.energy_j, own.energy_j()),
             holds(found.after.motion_energy_j, own.motion_energy_j()),
             holds(there.motion_energy_j, beyond.motion_energy_j()),
-        ];
-        let point = account(&found.model, &simulation).total.energy_j();
-        points += usize::from(holds(found.after.energy_j, point));
-        for (count, holds) in inside.iter_mut().zip(checks) {
-            *count += usize::from(holds);
-        }
-    }
+        ]
+    };
+    let trials: Vec<[bool; 4]> = (0..TRUTHS).into_par_iter().map(trial).collect();
+    let [points, inside @ ..] =
+        std::array::from_fn::<usize, 4, _>(|k| trials.iter().filter(|trial| trial[k]).count());
     assert!(points >= POINTS, "{points} energies of the robot as it is written");
     // The energy of the calibrated program is measured: its interval nearly always holds.
     assert!(inside[0] >= *INSIDE.start(), "{inside:?}");
