@@ -98,7 +98,7 @@ fn emitted(layout: Layout) -> Vec<SourceFile> {
         recorded: Recorded::default(),
         program: "0".into(),
     };
-    let emitted = emit(&emission, &sites).unwrap();
+    let emitted = emit(&emission, &sites, &[]).unwrap();
     let bytes = text::apply(&file.bytes, &emitted.edits).unwrap();
     let mut files = vec![SourceFile::new(FileId(0), "m.mod".into(), bytes)];
     for (name, text) in emitted.modules {

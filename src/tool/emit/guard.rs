@@ -189,10 +189,7 @@ pub(super) fn insertions(
     span: Span,
     guard: &Guard,
 ) -> Result<[Edit; 2], EmitError> {
-    let before = &file.bytes[..span.start as usize];
-    let line = before.rsplit(|b| matches!(b, b'\n' | b'\r')).next().unwrap_or_default();
-    let blank = line.iter().take_while(|b| matches!(b, b' ' | b'\t'));
-    let indent: String = blank.map(|b| char::from(*b)).collect();
+    let indent = indent(file, span);
     let end_of_line = end_of_line(&file.bytes);
     let mut context = Context::new();
     context.insert("p", prefix);
@@ -212,6 +209,20 @@ pub(super) fn insertions(
         text: charset.encode(&text).unwrap_or_else(|| text.into_bytes()),
     };
     Ok([insertion(span.start, head), insertion(span.end, tail)])
+}
+
+/// The insertion before a statement that makes up for movements that were put off.
+pub(super) fn made_up_for(prefix: &str, file: &SourceFile, stop: Span) -> Edit {
+    let text = format!("{prefix}Back;{}{}", end_of_line(&file.bytes), indent(file, stop));
+    Edit { span: Span { end: stop.start, ..stop }, text: text.into_bytes() }
+}
+
+/// The blanks before the first word of a statement's line.
+fn indent(file: &SourceFile, span: Span) -> String {
+    let before = &file.bytes[..span.start as usize];
+    let line = before.rsplit(|b| matches!(b, b'\n' | b'\r')).next().unwrap_or_default();
+    let blank = line.iter().take_while(|b| matches!(b, b' ' | b'\t'));
+    blank.map(|b| char::from(*b)).collect()
 }
 
 /// Comma-separated arguments, broken into lines.
@@ -258,6 +269,8 @@ mod tests {
             pause: None,
             external: [9e9; 6],
             values: Vec::new(),
+            follows: 0,
+            puts_off: None,
             origin: String::new(),
             before: String::new(),
             after: String::new(),

@@ -4,7 +4,7 @@
 
 use memchr::memmem;
 
-use crate::rapid::ir::hir::{Block, Expr, ExprKind, Routine, Stmt, StmtKind};
+use crate::rapid::ir::hir::{Block, Callee, Expr, ExprKind, Routine, Stmt, StmtKind};
 use crate::rapid::ir::lower;
 use crate::rapid::syntax;
 use crate::rapid::text::{Edit, SourceFile, Span, apply};
@@ -60,6 +60,7 @@ impl StreamRemover<'_> {
                     _ => {}
                 },
                 StmtKind::Assign { target, .. } if self.is_own(target) => self.note(stmt.span),
+                StmtKind::Call(call) if self.makes_up(&call.callee) => self.made_up_for(stmt.span),
                 _ => {}
             }
             for inner in stmt.kind.blocks() {
@@ -77,6 +78,18 @@ impl StreamRemover<'_> {
         let ExprKind::Call(name, _) = &condition.kind else { return false };
         let rest = name.key.strip_prefix(&self.prefix).and_then(|rest| rest.strip_prefix("fits"));
         rest.is_some_and(|number| number.parse::<usize>().is_ok())
+    }
+
+    /// Whether a call makes up for movements that were put off.
+    fn makes_up(&self, callee: &Callee) -> bool {
+        matches!(callee, Callee::Name(name) if name.key.strip_prefix(&self.prefix) == Some("back"))
+    }
+
+    /// Deletes such a call, with the blanks up to the next statement.
+    fn made_up_for(&mut self, span: Span) {
+        let rest = &self.bytes[span.end as usize..];
+        let blanks = rest.iter().take_while(|b| b.is_ascii_whitespace()).count();
+        self.delete(span, span.start as usize, span.end as usize + blanks);
     }
 
     /// Deletes a guard: the text through the line of ELSE, and ENDIF with its line.
