@@ -70,10 +70,13 @@ impl Margins {
         self.load *= FIRST_MARGIN;
     }
 
-    /// Another spacing, after a stream that is far from allowed: what it exceeds says nothing about the
-    /// margins.
-    pub(super) fn closer(&mut self) {
+    /// Closer points, after a stream that is far from allowed: what else it exceeds says nothing about
+    /// the margins.
+    pub(super) fn closer(&mut self, check: &Check) {
         self.spacing *= CLOSER;
+        if check.polygon > 1.0 {
+            self.polygon *= FIRST_DISTANCE / check.polygon;
+        }
     }
 
     /// No margins.

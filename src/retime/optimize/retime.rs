@@ -239,7 +239,7 @@ impl RunProblem<'_> {
                         if far == FAR_ATTEMPTS {
                             break;
                         }
-                        margins.closer();
+                        margins.closer(&attempt.check);
                     } else if share < worst {
                         worst = share;
                         margins.tighten_a_little(&attempt.check);
