@@ -11,7 +11,7 @@ use joulepath::retime::optimize::path_energy::{EnergyModel, Sharing};
 use joulepath::retime::optimize::polish_problem::PathPenalty;
 use joulepath::retime::optimize::stream_fit::{StreamFit, fit_stream};
 use joulepath::retime::optimize::stream_limits::StreamLimits;
-use joulepath::retime::optimize::stream_polish::polish_stream;
+use joulepath::retime::optimize::stream_polish::{Until, polish_stream};
 use joulepath::retime::optimize::stream_reference::Reference;
 use joulepath::retime::optimize::stream_spacing::{Spacing, adaptive_intervals};
 
@@ -86,7 +86,15 @@ fn stream(c: &mut Criterion) {
     c.bench_function("stream polish", |b| {
         let stream = black_box(&fitted.stream);
         b.iter(|| {
-            polish_stream(stream, &reference, &arm::SyntheticArm, &limits, &model, &corridor)
+            polish_stream(
+                stream,
+                &reference,
+                &arm::SyntheticArm,
+                &limits,
+                &model,
+                &corridor,
+                Until::Least,
+            )
         });
     });
 }

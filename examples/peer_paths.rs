@@ -29,7 +29,7 @@ use joulepath::retime::optimize::retime::{Goal, retime};
 use joulepath::retime::optimize::robot_plant::{smooth_torque, smooth_torque_derivatives};
 use joulepath::retime::optimize::stream_fit::{StreamFit, fit_stream};
 use joulepath::retime::optimize::stream_limits::StreamLimits;
-use joulepath::retime::optimize::stream_polish::polish_stream;
+use joulepath::retime::optimize::stream_polish::{Until, polish_stream};
 use joulepath::retime::optimize::stream_reference::Reference;
 use joulepath::retime::path::joint_path::DOF;
 use serde_json::{Value, json};
@@ -214,8 +214,16 @@ fn free_stream(case: &Case, limits: &PathLimits, caps: &[SpeedCap]) -> Value {
     let work = || -> Option<[Stream; 2]> {
         let fit = fit_stream(&reference, intervals.clone(), &joint_limits, &[1.0; DOF]).ok()?;
         let StreamFit::Fitted(fit) = fit else { return None };
-        let polished =
-            polish_stream(&fit.stream, &reference, &arm, &joint_limits, &model, &corridor).ok()?;
+        let polished = polish_stream(
+            &fit.stream,
+            &reference,
+            &arm,
+            &joint_limits,
+            &model,
+            &corridor,
+            Until::Least,
+        )
+        .ok()?;
         Some([fit.stream, polished.stream])
     };
     let Some([first, best]) = work() else { return Value::Null };

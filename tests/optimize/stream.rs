@@ -6,11 +6,11 @@ use joulepath::retime::motion::stream::{DOF, Joints, Piece, Stream};
 use joulepath::retime::motion::timing::profile::Profile;
 use joulepath::retime::motion::timing::reachability::time_optimal;
 use joulepath::retime::optimize::path_energy::{EnergyModel, Sharing, evaluate};
-use joulepath::retime::optimize::plant::{PathShares, Plant, realise};
+use joulepath::retime::optimize::plant::{PathDerivatives, PathShares, Plant, realise};
 use joulepath::retime::optimize::polish_problem::PathPenalty;
 use joulepath::retime::optimize::stream_fit::{FittedStream, StreamFit, fit_stream};
 use joulepath::retime::optimize::stream_limits::StreamLimits;
-use joulepath::retime::optimize::stream_polish::polish_stream;
+use joulepath::retime::optimize::stream_polish::{Until, polish_stream};
 use joulepath::retime::optimize::stream_reference::Reference;
 use joulepath::retime::optimize::stream_spacing::{Spacing, adaptive_intervals};
 
@@ -257,7 +257,8 @@ fn polished_streams_realise_most_of_the_predicted_saving() {
         let (spent, promised, reference, fit) = pipeline(seed, 1.1, &BUS);
         let arm = arm::SyntheticArm;
         let polished =
-            polish_stream(&fit, &reference, &arm, &arm_limits(), &BUS, &CORRIDOR).unwrap();
+            polish_stream(&fit, &reference, &arm, &arm_limits(), &BUS, &CORRIDOR, Until::Least)
+                .unwrap();
         let stream = &polished.stream;
         assert_eq!((stream.start(), stream.end()), (fit.start(), fit.end()));
         assert_eq!(stream.intervals(), fit.intervals());
@@ -286,7 +287,8 @@ fn a_free_path_costs_less() {
         let [bound, free] = [1e-3, f64::INFINITY].map(|tolerance| {
             let corridor = PathPenalty { tolerance, lever: LEVER };
             let arm = arm::SyntheticArm;
-            polish_stream(&fit, &reference, &arm, &arm_limits(), &BUS, &corridor).unwrap()
+            polish_stream(&fit, &reference, &arm, &arm_limits(), &BUS, &corridor, Until::Least)
+                .unwrap()
         });
         assert!(
             free.realised.energy.total() < 0.99 * bound.realised.energy.total(),
@@ -320,6 +322,12 @@ impl Plant for Flywheel {
 
     fn path_shares(&self, _q: &Joints, qd: &Joints, _place: &mut usize) -> PathShares {
         [qd[0].abs() / self.ceiling, 0.0, 0.0, 0.0]
+    }
+
+    fn path_derivatives(&self, _q: &Joints, qd: &Joints, _place: usize) -> PathDerivatives {
+        let mut slopes = PathDerivatives::default();
+        slopes[0][1][0] = qd[0].signum() / self.ceiling;
+        slopes
     }
 }
 
@@ -358,7 +366,7 @@ fn copper_losses_alone_give_a_stream_with_parabolic_speed() {
     let corridor = PathPenalty { tolerance: 1e-3, lever: LEVER };
     let polish = |ceiling: f64| {
         let plant = Flywheel { inertia: m, ceiling };
-        polish_stream(&fit, &reference, &plant, &FREE, &model, &corridor).unwrap()
+        polish_stream(&fit, &reference, &plant, &FREE, &model, &corridor, Until::Least).unwrap()
     };
     let energy = 12.0 * k * m * m * length * length / time.powi(3);
     let first = realise(&fit, &Flywheel { inertia: m, ceiling: 1e3 }, &model).energy.total();

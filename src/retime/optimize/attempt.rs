@@ -7,7 +7,7 @@ use super::reason::Reason;
 use super::run_plant::RunPlant;
 use super::run_problem::RunProblem;
 use super::stream_fit::{StreamFit, fit_stream};
-use super::stream_polish::polish_stream;
+use super::stream_polish::{FAR, Until, polish_stream};
 use super::stream_reference::Reference;
 use super::stream_rounding::{round_down, rounded_intervals, rounded_points};
 use super::stream_spacing::{Spacing, adaptive_intervals};
@@ -18,8 +18,6 @@ use crate::retime::path::joint_path::Joints;
 
 /// Smallest number of points of a stream.
 const LEAST_POINTS: usize = 2;
-/// Assumed TCP acceleration between two speed ceilings, m/s².
-const EASING: f64 = 10.0;
 /// Largest distance of two points, as a share of the length that their zones cover.
 const ZONE_SHARE: f64 = 0.95;
 /// The share that is used when [`ZONE_SHARE`] is exceeded; other rules move the points too.
@@ -31,6 +29,8 @@ const REFERENCE_STEP: f64 = 0.005;
 pub(super) struct Attempt {
     pub(super) stream: Stream,
     pub(super) check: Check,
+    /// Whether polishing came near its limits, with their margins.
+    pub(super) near: bool,
     /// The unrounded stream, from which polishing may continue.
     pub(super) fit: Fit,
 }
@@ -124,22 +124,25 @@ impl RunProblem<'_> {
     }
 
     /// Polishes the stream, rounds its points to the digits of the emitted code and checks it.
-    pub(super) fn realise(&self, fit: Fit, margins: &Margins) -> Result<Attempt, Reason> {
+    pub(super) fn realise(
+        &self,
+        fit: Fit,
+        margins: &Margins,
+        until: Until,
+    ) -> Result<Attempt, Reason> {
         let Fit { reference, stream } = fit;
-        let plant = RunPlant {
-            problem: self,
-            margins,
-            ceilings: self.corridor.smoothed_ceilings(margins.reach, EASING),
-        };
+        let plant =
+            RunPlant { problem: self, margins, smoothed: self.corridor.smoothed(margins.reach) };
         let penalty = PathPenalty { tolerance: self.free_distance(), lever: self.lever };
-        let polished =
-            polish_stream(&stream, &reference, &plant, &self.limits, &self.model, &penalty)
-                .map_err(|error| Reason::NoStream(error.to_string()))?;
+        let (limits, model) = (&self.limits, &self.model);
+        let polished = polish_stream(&stream, &reference, &plant, limits, model, &penalty, until)
+            .map_err(|error| Reason::NoStream(error.to_string()))?;
         let rounded = rounded_points(&polished.stream)
             .map_err(|error| Reason::NoStream(error.to_string()))?;
         let check = self.check(&rounded);
         let fit = Fit { reference, stream: polished.stream };
-        Ok(Attempt { stream: rounded, check, fit })
+        let near = polished.realised.excess <= FAR;
+        Ok(Attempt { stream: rounded, check, near, fit })
     }
 
     /// Time in which the TCP travels at most the length that the zones of two points cover, s.

@@ -14,11 +14,13 @@ impl Banded {
         Banded { size, width, entries: vec![0.0; size * (width + 1)] }
     }
 
+    #[inline]
     fn index(&self, i: usize, j: usize) -> usize {
         i * (self.width + 1) + self.width + j - i
     }
 
     /// Adds to the entry at (i, j) and its mirror; |i − j| ≤ width.
+    #[inline]
     pub(super) fn add(&mut self, i: usize, j: usize, value: f64) {
         let index = self.index(i.max(j), i.min(j));
         self.entries[index] += value;

@@ -1,9 +1,10 @@
 //! The programmed path with tolerances and speed ceilings for a realised motion.
 
-use nalgebra::{Isometry3, Vector4};
+use nalgebra::{Isometry3, Quaternion, SMatrix, Vector3, Vector4};
 
 use super::ceilings::{Ceiling, Ceilings};
 use super::freedom::Freedom;
+use super::smoothed::{Difference, Located, Slopes, Smoothed};
 use crate::arm::kinematics::fk;
 use crate::arm::robot::Model;
 use crate::retime::motion::timed::TimedMotion;
@@ -13,6 +14,8 @@ use crate::retime::path::joint_path::{DOF, Joints};
 
 /// Distance of the samples of the path, m.
 const SPACING: f64 = 0.002;
+/// Largest distance (m) and rotation (rad) of two samples at one pose.
+const SAME: f64 = 1e-9;
 /// Weight of a rotation of the tool in distances, m/rad.
 const METRES_PER_RADIAN: f64 = 0.1;
 /// Allowed distance from a line or arc, m.
@@ -159,61 +162,62 @@ impl Corridor {
         }
     }
 
-    /// TCP speed ceilings of all places, smoothed: each lower ceiling is extended by `reach` (m)
-    /// to both sides and rises beyond with `acceleration` (m/s²).
-    pub fn smoothed_ceilings(&self, reach: f64, acceleration: f64) -> Vec<f64> {
+    /// The limits of a stream at each place without steps: polishing needs derivatives. Each lower TCP
+    /// ceiling is extended by `reach` (m) to both sides.
+    pub(super) fn smoothed(&self, reach: f64) -> Smoothed {
         let last = self.places.len() - 1;
         let n = (reach / SPACING).ceil() as usize;
-        let mut smoothed: Vec<f64> = (0..=last)
-            .map(|i| {
-                let around = i.saturating_sub(n)..=(i + n).min(last);
-                self.places[around].iter().map(|p| p.ceiling.tcp).fold(f64::INFINITY, f64::min)
-            })
-            .collect();
-        let step = |i: usize| {
-            let (a, b) = (&self.places[i].pose, &self.places[i + 1].pose);
-            (a.translation.vector - b.translation.vector).norm()
+        let lowest = |i: usize| {
+            let around = i.saturating_sub(n)..=(i + n).min(last);
+            self.places[around].iter().map(|p| p.ceiling.tcp).fold(f64::INFINITY, f64::min)
         };
-        let rise = |from: f64, d: f64| (from * from + 2.0 * acceleration * d).sqrt();
-        for i in 0..last {
-            smoothed[i + 1] = smoothed[i + 1].min(rise(smoothed[i], step(i)));
-        }
-        for i in (0..last).rev() {
-            smoothed[i] = smoothed[i].min(rise(smoothed[i + 1], step(i)));
-        }
-        smoothed
+        let each = |value: &dyn Fn(&Place) -> f64| self.places.iter().map(value).collect();
+        let ways: Vec<f64> = self
+            .places
+            .windows(2)
+            .map(|pair| difference(&pair[0].pose, &pair[1].pose).norm())
+            .collect();
+        Smoothed::new(
+            &ways,
+            (0..=last).map(lowest).collect(),
+            std::array::from_fn(|j| each(&|place| place.ceiling.joints[j])),
+            each(&|place| place.tolerance),
+            each(&|place| place.polygon),
+        )
     }
 
-    /// The largest speeds at a place.
-    pub(super) fn ceiling(&self, place: usize) -> &Ceiling {
-        &self.places[place].ceiling
+    /// The position of a pose along the places. It is searched near `from`, which is set to the
+    /// nearest place.
+    pub(super) fn locate(&self, pose: &Isometry3<f64>, from: &mut usize) -> Located {
+        let place = self.nearest(pose, from);
+        let sides = self.neighbours(place).map(|next| self.aside(pose, place, next));
+        if sides[1].distance < sides[0].distance { sides[1] } else { sides[0] }
     }
 
-    /// The distance of a pose relative to its tolerance, and `values` interpolated at the pose. The
-    /// place is searched near `from`, which is set to it.
-    pub fn locate(&self, pose: &Isometry3<f64>, values: &[f64], from: &mut usize) -> (f64, f64) {
-        let i = self.nearest(pose, from);
-        let distance = self.distance(pose, i) / self.places[i].tolerance;
-        // Interpolation between the nearest place and its neighbour on the side of the pose.
-        let here = self.places[i].pose.translation.vector;
-        let offset = pose.translation.vector - here;
-        for k in [i + 1, i.wrapping_sub(1)] {
-            if k >= self.places.len() {
-                continue;
+    /// The derivatives of a position by the joint angles, with the Jacobian of the TCP at the pose.
+    pub(super) fn slopes(
+        &self,
+        at: &Located,
+        pose: &Isometry3<f64>,
+        jacobian: &SMatrix<f64, 6, DOF>,
+    ) -> Slopes {
+        let side = same_side(&self.places[at.place].pose, pose);
+        let inside = at.share > 0.0 && at.share < 1.0;
+        let mut slopes = Slopes::default();
+        for j in 0..DOF {
+            let moved = jacobian.fixed_view::<3, 1>(0, j).into_owned();
+            // The derivative of a unit quaternion is half of the angular velocity times it.
+            let turning = Quaternion::from_imag(jacobian.fixed_view::<3, 1>(3, j).into_owned());
+            let turned = METRES_PER_RADIAN * side * (turning * pose.rotation.quaternion()).coords;
+            let moved = stacked(&moved, &turned);
+            if inside {
+                slopes.share[j] = moved.dot(&at.along) / at.along.norm_squared();
             }
-            let along = self.places[k].pose.translation.vector - here;
-            let share = offset.dot(&along) / along.norm_squared();
-            if share > 0.0 {
-                return (distance, values[i] + (values[k] - values[i]) * share.min(1.0));
+            if at.distance > 0.0 {
+                slopes.distance[j] = moved.dot(&at.offset) / at.distance;
             }
         }
-        (distance, values[i])
-    }
-
-    /// The distance of a pose on the polygon relative to its tolerance, searched in the same way.
-    pub(super) fn polygon_share(&self, pose: &Isometry3<f64>, from: &mut usize) -> f64 {
-        let i = self.nearest(pose, from);
-        self.distance(pose, i) / self.places[i].polygon
+        slopes
     }
 
     /// The place nearest to a pose. It is searched near `from`, which is set to it.
@@ -228,30 +232,44 @@ impl Corridor {
             first_least(range.map(|i| (square(&self.places[i]), i)), 0).1
         };
         let last = self.places.len() - 1;
-        let window = from.saturating_sub(2 * STRIDE)..=(*from + AHEAD).min(last);
-        let coarse = nearest(&mut window.step_by(STRIDE));
-        *from = nearest(&mut (coarse.saturating_sub(STRIDE)..=(coarse + STRIDE).min(last)));
-        *from
+        let around = |i: usize| i.saturating_sub(STRIDE)..=(i + STRIDE).min(last);
+        let fine = around(*from);
+        let (begin, end) = (*fine.start(), *fine.end());
+        let mut best = nearest(&mut fine.into_iter());
+        // At the end of the window a nearer place may follow.
+        if (best == begin && begin > 0) || (best == end && end < last) {
+            let window = from.saturating_sub(2 * STRIDE)..=(*from + AHEAD).min(last);
+            best = nearest(&mut around(nearest(&mut window.step_by(STRIDE))));
+        }
+        *from = best;
+        best
     }
 
     /// Distance of a pose from the path stretches before and after a place, m.
     fn distance(&self, pose: &Isometry3<f64>, i: usize) -> f64 {
-        let place = &self.places[i].pose;
-        let from = pose.translation.vector - place.translation.vector;
-        let rotation = place.rotation.coords;
-        let turned = METRES_PER_RADIAN * turn_vector(&rotation, &pose.rotation.coords);
-        let aside = |k: usize| {
-            let next = &self.places[k].pose;
-            let along = next.translation.vector - place.translation.vector;
-            let turns = METRES_PER_RADIAN * turn_vector(&rotation, &next.rotation.coords);
-            let square = along.norm_squared() + turns.norm_squared();
-            let dot = from.dot(&along) + turned.dot(&turns);
-            let share = if square > 0.0 { (dot / square).clamp(0.0, 1.0) } else { 0.0 };
-            (from - along * share).norm().hypot((turned - turns * share).norm())
-        };
+        self.neighbours(i)
+            .map(|k| self.aside(pose, i, k).distance)
+            .into_iter()
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// The next and the previous place at another pose, or the last and the first: two pieces of the
+    /// path have a place each where they meet.
+    fn neighbours(&self, i: usize) -> [usize; 2] {
+        let here = &self.places[i].pose;
+        let other = |k: &usize| difference(here, &self.places[*k].pose).norm() > SAME;
         let last = self.places.len() - 1;
-        let neighbours = [i.saturating_sub(1), (i + 1).min(last)];
-        neighbours.map(aside).into_iter().fold(f64::INFINITY, f64::min)
+        [(i..=last).find(other).unwrap_or(last), (0..i).rev().find(other).unwrap_or(0)]
+    }
+
+    /// The position of a pose beside the stretch from place `i` to place `k`.
+    fn aside(&self, pose: &Isometry3<f64>, i: usize, k: usize) -> Located {
+        let from = difference(&self.places[i].pose, pose);
+        let along = difference(&self.places[i].pose, &self.places[k].pose);
+        let square = along.norm_squared();
+        let share = if square > 0.0 { (from.dot(&along) / square).clamp(0.0, 1.0) } else { 0.0 };
+        let offset = from - along * share;
+        Located { place: i, next: k, share, distance: offset.norm(), offset, along }
     }
 }
 
@@ -260,10 +278,24 @@ fn first_least(pairs: impl Iterator<Item = (f64, usize)>, otherwise: usize) -> (
     pairs.fold((f64::INFINITY, otherwise), |a, b| if b.0 < a.0 { b } else { a })
 }
 
-/// Difference of two orientations; for small angles its length is the angle, rad.
-fn turn_vector(from: &Vector4<f64>, to: &Vector4<f64>) -> Vector4<f64> {
-    let sign = if from.dot(to) < 0.0 { -1.0 } else { 1.0 };
-    2.0 * (sign * to - from)
+/// Displacement from one pose to another, m, over the difference of their orientations, which for
+/// small angles has the length of the angle, as a distance.
+fn difference(from: &Isometry3<f64>, to: &Isometry3<f64>) -> Difference {
+    let moved = to.translation.vector - from.translation.vector;
+    let turned = same_side(from, to) * to.rotation.coords - from.rotation.coords;
+    stacked(&moved, &(2.0 * METRES_PER_RADIAN * turned))
+}
+
+/// −1 if the quaternions of two near orientations have opposite signs, else 1.
+fn same_side(from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
+    if from.rotation.coords.dot(&to.rotation.coords) < 0.0 { -1.0 } else { 1.0 }
+}
+
+fn stacked(moved: &Vector3<f64>, turned: &Vector4<f64>) -> Difference {
+    let mut all = Difference::zeros();
+    all.fixed_rows_mut::<3>(0).copy_from(moved);
+    all.fixed_rows_mut::<4>(3).copy_from(turned);
+    all
 }
 
 /// Angle between two orientations, rad; for large angles its chord, which has the same order and
@@ -288,3 +320,37 @@ pub(super) fn levers(model: &Model, run: &Run) -> Joints {
 
 /// Smallest lever, m: a joint whose axis passes through the TCP still turns the tool.
 const MIN_LEVER: f64 = 0.1;
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::super::allowed::Loads;
+    use super::*;
+    use crate::arm::kinematics::Tcp;
+
+    /// A corridor along a joint movement, with limits that change along it.
+    pub(in super::super) fn along(
+        model: &Model,
+        tool: &Tcp,
+        ends: &[Joints; 2],
+    ) -> (Corridor, Smoothed) {
+        const PLACES: usize = 40;
+        let place = |i: usize| {
+            let x = i as f64 / PLACES as f64;
+            let q: Joints = std::array::from_fn(|j| ends[0][j] + x * (ends[1][j] - ends[0][j]));
+            let fast = 1.0 + 0.3 * x;
+            Place {
+                pose: tool.pose(&fk(model, &q)),
+                ceiling: Ceiling { tcp: fast, corner: fast, joints: [2.0 * fast; DOF] },
+                tolerance: 0.001 * fast,
+                polygon: 0.002 * fast,
+                stop_tolerance: STOP_TOLERANCE,
+            }
+        };
+        let loads = Loads { acceleration: [1.0; DOF], jerk: [1.0; DOF], torque: [1.0; DOF] };
+        let ceilings = Ceilings { loads, moves: Vec::new() };
+        let corridor =
+            Corridor { places: (0..=PLACES).map(place).collect(), ceilings, end: ends[1] };
+        let smoothed = corridor.smoothed(0.0);
+        (corridor, smoothed)
+    }
+}

@@ -2,7 +2,7 @@
 
 use super::cycle::{EnergyCurve, Known};
 use super::energy_program::{EnergyBound, energy_bound, minimize_energy};
-use super::margins::Margins;
+use super::margins::{Margins, SPACINGS};
 use super::path_energy::evaluate;
 use super::run_problem::{INTERVALS, RunProblem, Task, fastest_profile};
 use crate::retime::energy::account;
@@ -82,7 +82,8 @@ impl<'a> Curve<'a> {
     /// current time of the run. `None` if no stream is possible.
     pub fn new(task: &'a Task<'a>, shortest: f64, longest: f64) -> Option<Curve<'a>> {
         let problem = RunProblem::new(task).ok()?;
-        let (grid, limits) = problem.grid(&Margins::first(problem.tolerance()), COARSE).ok()?;
+        let (grid, limits) =
+            problem.grid(&Margins::first(problem.tolerance(), SPACINGS[0]), COARSE).ok()?;
         let fast = fastest_profile(&grid, &limits).ok()?;
         // The shortest time may be below the least time on the coarse grid.
         let reserve = RESERVE * fast.duration() + task.run.settling;

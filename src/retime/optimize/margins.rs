@@ -8,10 +8,12 @@ const FIRST_MARGIN: f64 = 0.98;
 const SPEED_MARGIN: f64 = 0.995;
 /// Initial reach of lower ceilings, m: half of a [`LONGEST_STEP`](super::run_plant::LONGEST_STEP).
 const FIRST_REACH: f64 = 0.002;
-/// Initial tolerance of the spacing of points, as a share of the path tolerance.
-const FIRST_SPACING: f64 = 0.1;
+/// Initial tolerances of the spacing of points, as shares of the path tolerance. Few points permit a
+/// larger change of acceleration at each, many follow the path more closely; neither is always
+/// better.
+pub(super) const SPACINGS: [f64; 2] = [0.1, 0.01];
 /// Initial share of the allowed distance from the path in polishing.
-pub(super) const FIRST_DISTANCE: f64 = 0.95;
+const FIRST_DISTANCE: f64 = 0.95;
 
 /// Initial clearance to keep-out zones, m; a motion is sampled in steps.
 const FIRST_ROOM: f64 = 0.005;
@@ -34,8 +36,7 @@ pub(super) struct Margins {
     pub(super) spacing: f64,
     /// Distance of the polygon from the path that the spacing of points permits, m.
     pub(super) polygon: f64,
-    /// Share of the allowed distance of that polygon in polishing; infinite until a check finds an
-    /// excess.
+    /// Share of the allowed distance of that polygon in polishing.
     pub(super) edges: f64,
     /// Share of the allowed distance from the path in polishing.
     pub(super) distance: f64,
@@ -44,15 +45,15 @@ pub(super) struct Margins {
 }
 
 impl Margins {
-    /// The initial margins for a path tolerance, m.
-    pub(super) fn first(tolerance: f64) -> Margins {
+    /// The initial margins for a path tolerance (m), and the tolerance of the spacing as a share of it.
+    pub(super) fn first(tolerance: f64, spacing: f64) -> Margins {
         Margins {
             load: FIRST_MARGIN,
             speed: 1.0,
             reach: FIRST_REACH,
-            spacing: FIRST_SPACING * tolerance,
+            spacing: spacing * tolerance,
             polygon: tolerance,
-            edges: f64::INFINITY,
+            edges: FIRST_DISTANCE,
             distance: FIRST_DISTANCE,
             room: FIRST_ROOM,
         }
@@ -69,15 +70,15 @@ impl Margins {
         self.load *= FIRST_MARGIN;
     }
 
-    /// No margins.
-    pub(super) fn none() -> Margins {
-        Margins { load: 1.0, reach: 0.0, distance: 1.0, room: 0.0, ..Margins::first(0.0) }
+    /// Another spacing, after a stream that is far from allowed: what it exceeds says nothing about the
+    /// margins.
+    pub(super) fn closer(&mut self) {
+        self.spacing *= CLOSER;
     }
 
-    /// The largest used share of the limits that apply.
-    pub(super) fn worst(&self, check: &Check) -> f64 {
-        let polygon = if self.edges.is_infinite() { 0.0 } else { check.polygon };
-        Check { polygon, ..*check }.worst()
+    /// No margins.
+    pub(super) fn none() -> Margins {
+        Margins { load: 1.0, reach: 0.0, distance: 1.0, room: 0.0, ..Margins::first(0.0, 0.0) }
     }
 
     /// Tightens the margins for a new attempt.
@@ -101,7 +102,7 @@ impl Margins {
             self.spacing *= CLOSER;
         }
         if check.polygon > 1.0 {
-            self.polygon /= check.polygon;
+            self.polygon *= FIRST_DISTANCE / check.polygon;
             self.edges = FIRST_DISTANCE;
         }
     }

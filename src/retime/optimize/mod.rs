@@ -29,6 +29,7 @@ pub mod robot_plant;
 mod run_plant;
 mod run_problem;
 pub mod site;
+mod smoothed;
 pub mod standstill;
 pub mod stream_fit;
 pub mod stream_limits;

@@ -3,8 +3,12 @@
 use super::path_energy::{EnergyModel, EnergyParts};
 use crate::retime::motion::stream::{DOF, Joints, Piece, Stream};
 
+/// Number of the limits that [`Plant::path_shares`] returns.
+const PATH_LIMITS: usize = 4;
 /// Used shares of the path limits.
-pub type PathShares = [f64; 4];
+pub type PathShares = [f64; PATH_LIMITS];
+/// Their derivatives by the joint angles and the joint speeds.
+pub type PathDerivatives = [[Joints; 2]; PATH_LIMITS];
 
 /// The robot that executes a stream.
 pub trait Plant {
@@ -39,10 +43,20 @@ pub trait Plant {
         PathShares::default()
     }
 
+    /// The derivatives of [`path_shares`](Plant::path_shares), 1/rad and s/rad.
+    fn path_derivatives(&self, _q: &Joints, _qd: &Joints, _place: usize) -> PathDerivatives {
+        PathDerivatives::default()
+    }
+
     /// Share of the limits at a position on the polygon of the points: distance from the path and
     /// clearance to keep-out zones. `place` as above.
     fn polygon_share(&self, _q: &Joints, _place: &mut usize) -> f64 {
         0.0
+    }
+
+    /// The derivatives of [`polygon_share`](Plant::polygon_share), 1/rad.
+    fn polygon_derivatives(&self, _q: &Joints, _place: usize) -> Joints {
+        Joints::default()
     }
 
     /// Number of integration steps on a piece, even.
@@ -73,6 +87,14 @@ pub(super) const ROOM: f64 = 1e-3;
 /// Smallest number of integration steps on a piece; even for Simpson's rule.
 pub(super) const LEAST_STEPS: usize = 8;
 
+/// Stretches of a piece, of each of which the largest share of a limit counts.
+pub(super) const STRETCHES: usize = 3;
+
+/// The stretch of sample `i` of `steps`.
+pub(super) fn stretch(i: usize, steps: usize) -> usize {
+    (STRETCHES * i / steps).min(STRETCHES - 1)
+}
+
 /// Cost of the realised motion of a stream and its used shares of the limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Realised {
@@ -81,7 +103,7 @@ pub struct Realised {
     pub energy: EnergyParts,
     /// The largest used share of a torque or path limit.
     pub worst_share: f64,
-    /// Sum over the samples of the excess of shares over 1 − `ROOM`.
+    /// Sum over the stretches and the limits of the largest excess of a share over 1 − `ROOM`.
     pub excess: f64,
 }
 
@@ -94,6 +116,7 @@ pub fn realise(stream: &Stream, plant: &impl Plant, model: &EnergyModel) -> Real
     for piece in stream.pieces() {
         let steps = plant.steps(&piece);
         let step = piece.length / steps as f64;
+        let mut excess = [[0.0f64; DOF + PATH_LIMITS]; STRETCHES];
         for i in 0..=steps {
             let (q, qd, qdd) = piece.at(i as f64 * step);
             let ends = i == 0 || i == steps;
@@ -107,9 +130,10 @@ pub fn realise(stream: &Stream, plant: &impl Plant, model: &EnergyModel) -> Real
             sum.drive += seconds * model.braked(&power);
             let path = plant.path_shares(&q, &qd, &mut place);
             let loads = (0..DOF).map(|j| torque[j].abs() / limit[j]);
-            for share in path.into_iter().chain(loads) {
+            for (share, excess) in path.into_iter().chain(loads).zip(&mut excess[stretch(i, steps)])
+            {
                 out.worst_share = out.worst_share.max(share);
-                out.excess += (share - (1.0 - ROOM)).max(0.0);
+                *excess = excess.max(share - (1.0 - ROOM));
             }
             for j in 0..DOF {
                 sum.mechanical += seconds * model.work * smooth[j] * qd[j];
@@ -118,6 +142,7 @@ pub fn realise(stream: &Stream, plant: &impl Plant, model: &EnergyModel) -> Real
                 sum.copper += seconds * model.loss[j] * torque[j] * torque[j];
             }
         }
+        out.excess += excess.as_flattened().iter().sum::<f64>();
     }
     let mut place = 0;
     for edge in stream.polygon() {

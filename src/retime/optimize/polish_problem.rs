@@ -1,10 +1,13 @@
 //! The merit function of stream polishing and its quadratic model.
 
+use std::collections::BTreeMap;
+
 use super::banded::Banded;
 use super::banded_program::Row;
 use super::path_energy::{EnergyModel, Sharing};
 use super::plant::{
-    DIFFERENCES, EDGE_PLACES, PathShares, Plant, ROOM, Realised, direction, realise,
+    EDGE_PLACES, PathDerivatives, PathShares, Plant, ROOM, Realised, STRETCHES, direction, realise,
+    stretch,
 };
 use super::stream_points::Points;
 use super::stream_reference::Reference;
@@ -22,9 +25,9 @@ pub struct PathPenalty {
 /// Cost of a mean distance equal to the tolerance, as a share of the energy.
 const DEVIATION_PRICE: f64 = 0.02;
 /// Price of an excess of 1, in units of the initial energy.
-const VIOLATION_PRICE: f64 = 5.0;
+pub(super) const VIOLATION_PRICE: f64 = 5.0;
 /// Share of its limit from which a row is in a program.
-const NEAR: f64 = 0.75;
+const NEAR: f64 = 0.9;
 /// Unit of the variables, rad.
 pub(super) const UNIT: f64 = 0.01;
 /// Smallest tolerance, m.
@@ -59,6 +62,9 @@ pub(super) struct PolishProblem<'a, P> {
     dry: Joints,
 }
 
+/// The row of the largest share of each limit on each stretch of a piece of a stream.
+type WorstRows = BTreeMap<(usize, usize), Row>;
+
 /// Torque, shares of the path limits and their derivatives at one place. `torque_by[kind][i]` is
 /// the derivative by q, q̇ or q̈ of joint i.
 struct Linearised {
@@ -66,7 +72,7 @@ struct Linearised {
     path: PathShares,
     torque_by: [[Joints; DOF]; 3],
     /// Derivative of each share by q and q̇; zero if all shares are far from 1.
-    path_by: [[[f64; DOF]; 2]; 4],
+    path_by: PathDerivatives,
 }
 
 impl<'a, P: Plant> PolishProblem<'a, P> {
@@ -151,23 +157,12 @@ impl<'a, P: Plant> PolishProblem<'a, P> {
     }
 
     /// Computes the derivatives.
-    fn linearise(&self, place: &Place, near: usize, lin: &mut Linearised) {
+    fn linearise(&self, place: &Place, near: usize, beyond: f64, lin: &mut Linearised) {
         lin.torque_by = self.plant.torque_derivatives(&place.q, &place.qd, &place.qdd);
-        if lin.path.iter().all(|share| *share <= NEAR) {
+        if lin.path.iter().all(|share| *share <= beyond) {
             return;
         }
-        // The path shares depend on angles and speeds, not on accelerations.
-        for (kind, step) in DIFFERENCES.into_iter().enumerate().take(2) {
-            for joint in self.points.joints.iter().copied() {
-                let mut state = [place.q, place.qd];
-                state[kind][joint] += step;
-                let [q, qd] = state;
-                let next = self.plant.path_shares(&q, &qd, &mut near.clone());
-                for (limit, next) in next.iter().enumerate() {
-                    lin.path_by[limit][kind][joint] = (next - lin.path[limit]) / step;
-                }
-            }
-        }
+        lin.path_by = self.plant.path_derivatives(&place.q, &place.qd, near);
     }
 
     /// The quadratic model of merit and limits around a stream with this excess.
@@ -181,48 +176,72 @@ impl<'a, P: Plant> PolishProblem<'a, P> {
             shares: Vec::new(),
             broken: VIOLATION_PRICE * excess,
         };
-        let mut near = 0;
-        let limit = self.plant.torque_limit();
-        for place in places(stream, |piece| self.plant.steps(piece)) {
-            let mut lin = self.shares(&place, &mut near);
-            let loaded = (0..DOF).any(|j| lin.torque[j].abs() > NEAR * limit[j]);
-            if place.seconds > 0.0 || loaded || lin.path.iter().any(|share| *share > NEAR) {
-                self.linearise(&place, near, &mut lin);
-                self.add_place(&place, &lin, &mut model);
-            }
+        let mut worst = WorstRows::default();
+        for (place, lin) in self.linearised(stream, NEAR, true) {
+            let columns = self.columns(&place, &lin);
+            self.add_costs(&place, &lin, &columns, &mut model);
+            self.add_limits(&place, &lin, &columns, NEAR, &mut worst);
         }
-        self.add_polygon(stream, &mut model);
+        model.shares = worst.into_values().collect();
+        self.add_polygon(stream, NEAR, &mut model.shares);
         model
     }
 
+    /// The limits that a stream exceeds, as rows in the change of the variables from it.
+    pub(super) fn exceeded(&self, stream: &Stream) -> Vec<Row> {
+        let mut worst = WorstRows::default();
+        for (place, lin) in self.linearised(stream, 1.0 - ROOM, false) {
+            self.add_limits(&place, &lin, &self.columns(&place, &lin), 1.0 - ROOM, &mut worst);
+        }
+        let mut rows = worst.into_values().collect();
+        self.add_polygon(stream, 1.0 - ROOM, &mut rows);
+        rows
+    }
+
+    /// The samples of a stream at which a limit is used beyond the share `beyond`, and with `costs`
+    /// those of the integrals.
+    fn linearised(&self, stream: &Stream, beyond: f64, costs: bool) -> Vec<(Place, Linearised)> {
+        let mut near = 0;
+        let limit = self.plant.torque_limit();
+        let mut samples = Vec::new();
+        for place in places(stream, |piece| self.plant.steps(piece)) {
+            let mut lin = self.shares(&place, &mut near);
+            let loaded = (0..DOF).any(|j| lin.torque[j].abs() > beyond * limit[j]);
+            let limited = loaded || lin.path.iter().any(|share| *share > beyond);
+            if limited || (costs && place.seconds > 0.0) {
+                self.linearise(&place, near, beyond, &mut lin);
+                samples.push((place, lin));
+            }
+        }
+        samples
+    }
+
     /// Adds the limits of the polygon of the points.
-    fn add_polygon(&self, stream: &Stream, model: &mut Quadratic) {
+    fn add_polygon(&self, stream: &Stream, beyond: f64, rows: &mut Vec<Row>) {
         let mut near = 0;
         for (i, edge) in stream.polygon().enumerate() {
             for tau in EDGE_PLACES {
                 let (q, _, _) = edge.at(tau);
                 let share = self.plant.polygon_share(&q, &mut near);
-                if share <= NEAR {
+                if share <= beyond {
                     continue;
                 }
+                let slopes = self.plant.polygon_derivatives(&q, near);
                 let mut weights = Vec::new();
                 for (m, joint) in self.points.joints.iter().enumerate() {
-                    let mut state = q;
-                    state[*joint] += DIFFERENCES[0];
-                    let next = self.plant.polygon_share(&state, &mut near.clone());
-                    let slope = UNIT * (next - share) / DIFFERENCES[0];
+                    let slope = UNIT * slopes[*joint];
                     for (point, weight) in [(i, 1.0 - tau), (i + 1, tau)] {
                         let index = self.points.variable(point, m);
                         weights.extend(index.map(|index| (index, weight * slope)));
                     }
                 }
-                model.add_share(share, weights.into_iter());
+                rows.push(share_row(share, weights.into_iter()));
             }
         }
     }
 
-    /// Adds the costs and limits at a place to the model.
-    fn add_place(&self, place: &Place, lin: &Linearised, model: &mut Quadratic) {
+    /// The derivatives of the quantities at a place by the variables.
+    fn columns(&self, place: &Place, lin: &Linearised) -> Vec<Column> {
         let weights = self.points.knots.weights(place.piece, place.tau);
         let mut columns = Vec::new();
         for (k, i) in weights.support.clone().enumerate() {
@@ -241,10 +260,27 @@ impl<'a, P: Plant> PolishProblem<'a, P> {
                 }
             }
         }
+        columns
+    }
+
+    /// Adds the costs at a place to the model.
+    fn add_costs(
+        &self,
+        place: &Place,
+        lin: &Linearised,
+        columns: &[Column],
+        model: &mut Quadratic,
+    ) {
+        if place.seconds <= 0.0 {
+            return;
+        }
         let per = place.seconds / self.unit;
         let (offset, along) = self.offset(place);
         let price = self.deviation_price() * place.seconds;
         let lever = &self.penalty.lever;
+        let power = self.shared(std::array::from_fn(|j| lin.torque[j] * place.qd[j]));
+        let brakes = power.map(|power| self.braking_loss(power, per));
+        let mut squares: Vec<[f64; 2 * DOF]> = Vec::with_capacity(columns.len());
         for (n, a) in columns.iter().enumerate() {
             let mut slope = 2.0 * price * a.w * lever[a.joint] * offset[a.joint];
             for j in 0..DOF {
@@ -252,38 +288,77 @@ impl<'a, P: Plant> PolishProblem<'a, P> {
                 slope += per * a.torque[j] * (2.0 * self.model.loss[j] * lin.torque[j] + work);
             }
             let speed = 2.0 * self.model.speed * place.qd[a.joint];
-            let (dry, _) = self.rounded_friction(a.joint, place.qd[a.joint]);
+            let (dry, dry_slope) = self.rounded_friction(a.joint, place.qd[a.joint]);
             let torque = lin.torque[a.joint] + dry;
             slope += per * a.w1 * (self.model.work * torque + speed);
+            let mut power: Joints = std::array::from_fn(|j| a.torque[j] * place.qd[j]);
+            power[a.joint] += a.w1 * lin.torque[a.joint];
+            let power = self.shared(power);
+            slope += power.iter().zip(brakes).map(|(power, (slope, _))| power * slope).sum::<f64>();
             model.gradient[a.index] += slope;
-            for b in &columns[..=n] {
-                let mut curve: f64 = (0..DOF)
-                    .map(|j| 2.0 * per * self.model.loss[j] * a.torque[j] * b.torque[j])
-                    .sum();
+
+            let copper = |j: usize| (2.0 * per * self.model.loss[j]).sqrt() * a.torque[j];
+            let braked = |j: usize| brakes[j].1.sqrt() * power[j];
+            squares
+                .push(std::array::from_fn(|k| if k < DOF { copper(k) } else { braked(k - DOF) }));
+            for (b, square) in columns.iter().zip(&squares) {
+                let mut curve: f64 = squares[n].iter().zip(square).map(|(a, b)| a * b).sum();
                 let mut normal = -along[a.joint] * along[b.joint];
                 if a.joint == b.joint {
                     normal += 1.0;
                     let viscous = lin.torque_by[1][a.joint][a.joint].max(0.0);
-                    let (_, dry) = self.rounded_friction(a.joint, place.qd[a.joint]);
-                    let friction = self.model.work * (viscous + 0.5 * dry);
+                    let friction = self.model.work * (viscous + 0.5 * dry_slope);
                     curve += 2.0 * per * (friction + self.model.speed) * a.w1 * b.w1;
                 }
                 curve += 2.0 * price * a.w * b.w * lever[a.joint] * lever[b.joint] * normal;
                 model.matrix.add(a.index, b.index, curve);
             }
         }
-        self.add_brakes(place, lin, &columns, model);
-        let limit = self.plant.torque_limit();
-        for j in 0..DOF {
-            let share = lin.torque[j] / limit[j];
-            if share.abs() > NEAR {
-                let sign = share.signum();
-                let weights = columns.iter().map(|c| (c.index, sign * c.torque[j] / limit[j]));
-                model.add_share(share.abs(), weights);
+    }
+
+    /// The powers that brake separately: those of the joints, or their sum on a common bus.
+    fn shared(&self, powers: Joints) -> Joints {
+        match self.model.sharing {
+            Sharing::PerJoint => powers,
+            Sharing::Bus => {
+                let mut bus = [0.0; DOF];
+                bus[0] = powers.iter().sum();
+                bus
             }
         }
-        for (limit, share) in lin.path.iter().enumerate().filter(|(_, share)| **share > NEAR) {
-            model.add_share(*share, columns.iter().map(|c| (c.index, c.path[limit])));
+    }
+
+    /// Slope and curvature of the braking loss (√(p² + ε²) − p) / 2 at the power p (W), times `per`.
+    fn braking_loss(&self, power: f64, per: f64) -> (f64, f64) {
+        let lost = 0.5 * per * (1.0 - self.model.regeneration);
+        let root = power.hypot(self.round_power);
+        (lost * (power / root - 1.0), lost * (self.round_power / root).powi(2) / root)
+    }
+
+    /// Adds rows for the limits that are used beyond a share at a place, if no place of the same
+    /// stretch uses more.
+    fn add_limits(
+        &self,
+        place: &Place,
+        lin: &Linearised,
+        columns: &[Column],
+        beyond: f64,
+        worst: &mut WorstRows,
+    ) {
+        let limit = self.plant.torque_limit();
+        let torques = (0..DOF).map(|j| lin.torque[j] / limit[j]);
+        for (n, share) in torques.chain(lin.path).enumerate() {
+            let bound = 1.0 - ROOM - share.abs();
+            let known = worst.get(&(place.stretch, n));
+            if share.abs() <= beyond || known.is_some_and(|row| row.bound <= bound) {
+                continue;
+            }
+            let weight = |c: &Column| match n.checked_sub(DOF) {
+                Some(path) => c.path[path],
+                None => share.signum() * c.torque[n] / limit[n],
+            };
+            let row = share_row(share.abs(), columns.iter().map(|c| (c.index, weight(c))));
+            worst.insert((place.stretch, n), row);
         }
     }
 
@@ -297,52 +372,12 @@ impl<'a, P: Plant> PolishProblem<'a, P> {
             dry * (self.round_speed / root).powi(2) / root,
         )
     }
-
-    /// Adds the braking loss at a place: (√(p² + ε²) − p) / 2 for each power p, with its slope and
-    /// curvature.
-    fn add_brakes(
-        &self,
-        place: &Place,
-        lin: &Linearised,
-        columns: &[Column],
-        model: &mut Quadratic,
-    ) {
-        let lost = (1.0 - self.model.regeneration) * place.seconds / self.unit;
-        if lost <= 0.0 {
-            return;
-        }
-        let round = self.round_power;
-        let powers: Joints = std::array::from_fn(|j| lin.torque[j] * place.qd[j]);
-        let mut add = |group: &[usize]| {
-            let now: f64 = group.iter().map(|j| powers[*j]).sum();
-            let root = now.hypot(round);
-            let slope = 0.5 * lost * (now / root - 1.0);
-            let curvature = 0.5 * lost * (round / root).powi(2) / root;
-            let by: Vec<f64> = columns
-                .iter()
-                .map(|column| {
-                    let force: f64 = group.iter().map(|j| place.qd[*j] * column.torque[*j]).sum();
-                    let own = group.contains(&column.joint);
-                    force + if own { column.w1 * lin.torque[column.joint] } else { 0.0 }
-                })
-                .collect();
-            for (n, a) in columns.iter().enumerate() {
-                model.gradient[a.index] += slope * by[n];
-                for (m, b) in columns[..=n].iter().enumerate() {
-                    model.matrix.add(a.index, b.index, curvature * by[n] * by[m]);
-                }
-            }
-        };
-        match self.model.sharing {
-            Sharing::Bus => add(&self.points.joints),
-            Sharing::PerJoint => self.points.joints.iter().for_each(|j| add(&[*j])),
-        }
-    }
 }
 
 /// A sample of the realised motion.
 struct Place {
     piece: usize,
+    stretch: usize,
     /// Time in the piece, s; then the weight in the integral, s.
     tau: f64,
     seconds: f64,
@@ -367,7 +402,16 @@ fn places(stream: &Stream, steps: impl Fn(&Piece) -> usize) -> Vec<Place> {
                     _ => 0.0,
                 };
                 let seconds = weight * piece.length;
-                Place { piece: index, tau, seconds, t: piece.start + tau, q, qd, qdd }
+                Place {
+                    piece: index,
+                    stretch: STRETCHES * index + stretch(i, steps),
+                    tau,
+                    seconds,
+                    t: piece.start + tau,
+                    q,
+                    qd,
+                    qdd,
+                }
             })
             .collect::<Vec<Place>>()
     };
@@ -395,12 +439,9 @@ pub(super) struct Quadratic {
     pub(super) broken: f64,
 }
 
-impl Quadratic {
-    /// Adds a share of a limit with its derivatives by the variables.
-    fn add_share(&mut self, share: f64, weights: impl Iterator<Item = (usize, f64)>) {
-        let terms = weights.collect();
-        self.shares.push(Row { terms, bound: 1.0 - ROOM - share, price: VIOLATION_PRICE });
-    }
+/// A share of a limit with its derivatives by the variables, as a priced row.
+fn share_row(share: f64, weights: impl Iterator<Item = (usize, f64)>) -> Row {
+    Row { terms: weights.collect(), bound: 1.0 - ROOM - share, price: VIOLATION_PRICE }
 }
 
 /// The largest power of a joint, W.

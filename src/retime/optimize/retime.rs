@@ -3,13 +3,16 @@
 //! The convex program on the path gives a reference motion. A stream is fitted to it and its
 //! realised motion is checked. If a limit is exceeded, the next attempt has tighter margins.
 
+use std::cell::Cell;
+
 use super::attempt::{Attempt, Fit};
 use super::energy_program::{EnergyBound, energy_bound, minimize_energy};
 use super::keep_out;
-use super::margins::{FIRST_DISTANCE, Margins};
+use super::margins::{Margins, SPACINGS};
 use super::reason::Reason;
 pub use super::run_problem::Task;
 use super::run_problem::{INTERVALS, RunProblem, fastest_profile};
+use super::stream_polish::Until;
 use super::stream_rounding::{quantum, round_down, round_up, rounded_intervals};
 use crate::arm::dynamics::potential_energy;
 use crate::retime::energy::power::motion_energy;
@@ -57,20 +60,25 @@ pub enum PathUse {
     Left,
 }
 
-/// Largest number of attempts with tighter margins.
+/// Largest number of attempts with tighter margins, and of those that end far from allowed.
 const ATTEMPTS: usize = 8;
+const FAR_ATTEMPTS: usize = 4;
 /// Relative difference between two integrations of the same energy.
 const BOUND_ROUNDING: f64 = 1e-5;
 /// Share of a limit beyond which the next attempt starts from the program instead of polishing.
 const NEARLY: f64 = 2.0;
 /// Smallest saving that is worth a stream, as a share of the motion energy.
 const WORTHWHILE: f64 = 1e-3;
+/// Share of the motion energy within which a stream is near its lower bound.
+const NEAR_BOUND: f64 = 0.01;
 /// Largest share of the energy that further polishing may still save.
 const HOPELESS: f64 = 0.05;
 /// Smallest search step for slow motions, as a share of their duration.
 const SLOW_STEP: f64 = 0.02;
-/// Time added to the fastest profile in the search for the fastest stream, in ramp times.
-const RAMP_SHARES: [f64; 8] = [0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.3, 1.8];
+/// Largest time added to the fastest profile in the search for the fastest stream, in ramp times, and
+/// the smaller ones.
+const LONGEST: f64 = 1.8;
+const SHORTER: [f64; 7] = [0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.3];
 
 /// The stream of a run.
 ///
@@ -155,40 +163,85 @@ impl RunProblem<'_> {
     fn least_energy(&self, time: f64, worth: f64) -> Result<Retiming, Reason> {
         let budget = round_down(time - self.task.run.settling);
         let bound = self.bound(budget);
-        let mut margins = Margins::first(self.tolerance());
-        let mut problem = None;
+        let with = |spacing: f64| {
+            let margins = Margins::first(self.tolerance(), spacing);
+            self.least_energy_with(margins, budget, worth, bound.as_ref())
+        };
+        let [few, many] = SPACINGS;
+        let few = with(few);
+        let near = |retiming: &Retiming| {
+            let energy =
+                retiming.energy.energy_j() - NEAR_BOUND * retiming.energy.motion_energy_j();
+            energy < retiming.lower_bound_j
+        };
+        match few {
+            Ok(few) if near(&few) => Ok(few),
+            Ok(few) => match with(many) {
+                Ok(many) if many.energy.energy_j() < few.energy.energy_j() => Ok(many),
+                _ => Ok(few),
+            },
+            Err(reason) => with(many).or(Err(reason)),
+        }
+    }
+
+    /// The same with these margins in the first attempt; without settling.
+    fn least_energy_with(
+        &self,
+        mut margins: Margins,
+        budget: f64,
+        worth: f64,
+        bound: Option<&EnergyBound>,
+    ) -> Result<Retiming, Reason> {
+        let is_tight = Cell::new(false);
+        let begin = |margins: &Margins| {
+            let program = self.least_energy_program(budget, margins, bound);
+            is_tight.set(is_tight.get() || matches!(program, Err(Reason::NoSaving)));
+            program.or_else(|reason| self.fit_original(reason, budget, margins))
+        };
+        // Tighter margins do not lower the energy; polishing lowers it slightly.
+        let hopeless = |attempt: &Attempt| {
+            let energy = self.moving(&attempt.stream).motion_energy_j();
+            energy - HOPELESS * energy.abs() >= worth
+        };
+        let attempt = self.attempts(&mut margins, Until::Least, &begin, &hopeless);
+        let attempt = attempt.map_err(|reason| match reason {
+            Reason::NoStream(_) if is_tight.get() => Reason::NoSaving,
+            reason => reason,
+        })?;
+        let retiming = self.retiming(attempt.stream, bound.map(|bound| bound.lower_bound));
+        let saves = retiming.energy.motion_energy_j() < worth;
+        if saves { Ok(retiming) } else { Err(Reason::NoSaving) }
+    }
+
+    /// Attempts at a stream that keeps all limits, from `begin` on with margins that each check
+    /// tightens. A hopeless one is not worth another.
+    fn attempts(
+        &self,
+        margins: &mut Margins,
+        until: Until,
+        begin: &dyn Fn(&Margins) -> Result<Fit, Reason>,
+        hopeless: &dyn Fn(&Attempt) -> bool,
+    ) -> Result<Attempt, Reason> {
+        let mut problem = String::new();
         let mut begun: Option<Fit> = None;
         let mut worst = NEARLY;
-        let mut is_tight = false;
+        let mut far = 0;
         for _ in 0..ATTEMPTS {
-            let fit = begun.take().map_or_else(
-                || {
-                    let program = self.least_energy_program(budget, &margins, bound.as_ref());
-                    is_tight |= matches!(program, Err(Reason::NoSaving));
-                    program.or_else(|reason| self.fit_original(reason, budget, &margins))
-                },
-                Ok,
-            );
-            let outcome = fit.and_then(|fit| self.realise(fit, &margins));
-            match outcome {
-                Ok(attempt) if attempt.check.holds() => {
-                    let bound = bound.map(|bound| bound.lower_bound);
-                    let retiming = self.retiming(attempt.stream, bound);
-                    let saves = retiming.energy.motion_energy_j() < worth;
-                    return if saves { Ok(retiming) } else { Err(Reason::NoSaving) };
-                }
+            let fit = begun.take().map_or_else(|| begin(margins), Ok);
+            match fit.and_then(|fit| self.realise(fit, margins, until)) {
+                Ok(attempt) if attempt.check.holds() => return Ok(attempt),
+                Ok(attempt) if hopeless(&attempt) => return Err(Reason::NoSaving),
                 Ok(attempt) => {
-                    // Tighter margins do not lower the energy; polishing lowers it slightly.
-                    let energy = self.moving(&attempt.stream).motion_energy_j();
-                    if energy - HOPELESS * energy.abs() >= worth {
-                        return Err(Reason::NoSaving);
-                    }
-                    problem = Some(attempt.check.fault());
-                    let share = margins.worst(&attempt.check);
-                    if share < worst {
-                        // From now on polishing also limits the polygon.
-                        let is_new = margins.edges.is_infinite() && attempt.check.polygon > 1.0;
-                        worst = if is_new { f64::INFINITY } else { share };
+                    problem = attempt.check.fault();
+                    let share = attempt.check.worst();
+                    if !attempt.near {
+                        far += 1;
+                        if far == FAR_ATTEMPTS {
+                            break;
+                        }
+                        margins.closer();
+                    } else if share < worst {
+                        worst = share;
                         margins.tighten_a_little(&attempt.check);
                         begun = Some(attempt.fit);
                     } else {
@@ -198,12 +251,12 @@ impl RunProblem<'_> {
                 }
                 Err(Reason::NoStream(why)) => {
                     margins.lighten();
-                    problem = Some(why);
+                    problem = why;
                 }
                 Err(other) => return Err(other),
             }
         }
-        Err(if is_tight { Reason::NoSaving } else { Reason::NoStream(problem.unwrap_or_default()) })
+        Err(Reason::NoStream(problem))
     }
 
     /// The solution of the convex program and a stream fitted to it.
@@ -237,34 +290,33 @@ impl RunProblem<'_> {
 
     /// Least time: the fastest profile, lengthened until it keeps the jerk limit.
     fn least_time(&self) -> Result<Retiming, Reason> {
-        let mut margins = Margins { edges: FIRST_DISTANCE, ..Margins::first(self.tolerance()) };
-        let ramp = self.task.model.controller.ramp_s.unwrap_or(0.1);
-        let mut problem = None;
-        for _ in 0..ATTEMPTS {
-            let (grid, limits) = self.grid(&margins, INTERVALS)?;
-            let fast = fastest_profile(&grid, &limits)?;
-            let mut best: Option<Attempt> = None;
-            let step = ramp.max(SLOW_STEP * fast.duration());
-            for share in RAMP_SHARES {
-                let budget = round_up(fast.duration() + share * step);
-                let fit = self.fit_profile(&fast, budget, &margins);
-                match fit.and_then(|fit| self.realise(fit, &margins)) {
-                    Ok(attempt) if attempt.check.holds() => {
-                        return Ok(self.retiming(attempt.stream, None));
-                    }
-                    Ok(attempt) => {
-                        problem = Some(Reason::NoStream(attempt.check.fault()));
-                        best = Some(attempt);
-                    }
-                    Err(reason) => problem = Some(reason),
+        let mut margins = Margins::first(self.tolerance(), SPACINGS[0]);
+        let begin = |margins: &Margins| self.lengthened(LONGEST, margins);
+        let mut found = self.attempts(&mut margins, Until::Kept, &begin, &|_| false)?;
+        let _ = SHORTER.partition_point(|share| {
+            let fit = self.lengthened(*share, &margins);
+            match fit.and_then(|fit| self.realise(fit, &margins, Until::Kept)) {
+                Ok(attempt) if attempt.check.holds() => {
+                    found = attempt;
+                    false
                 }
+                _ => true,
             }
-            match best {
-                Some(attempt) => margins.tighten(&attempt.check),
-                None => margins.lighten(),
-            }
-        }
-        Err(problem.unwrap_or_else(|| Reason::NoStream(String::new())))
+        });
+        let stream = match self.realise(found.fit, &margins, Until::Least) {
+            Ok(polished) if polished.check.holds() => polished.stream,
+            _ => found.stream,
+        };
+        Ok(self.retiming(stream, None))
+    }
+
+    /// A stream that takes longer than the fastest profile by a share of a ramp.
+    fn lengthened(&self, share: f64, margins: &Margins) -> Result<Fit, Reason> {
+        let (grid, limits) = self.grid(margins, INTERVALS)?;
+        let fast = fastest_profile(&grid, &limits)?;
+        let ramp = self.task.model.controller.ramp_s.unwrap_or(0.1);
+        let step = ramp.max(SLOW_STEP * fast.duration());
+        self.fit_profile(&fast, round_up(fast.duration() + share * step), margins)
     }
 
     /// The fastest stream, slowed to the given time.
