@@ -86,8 +86,8 @@ impl<'a> FullPath<'a> {
 }
 
 /// Times of a trade-off before and after the time of the run.
-const FASTER: usize = 6;
-const SLOWER: usize = 12;
+const FASTER: usize = 5;
+const SLOWER: usize = 10;
 
 /// Motion energy of a run over its time with settling: curves from the least time to a multiple of
 /// the time of the run.

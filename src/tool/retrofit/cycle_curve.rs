@@ -71,13 +71,14 @@ pub(super) fn cycle_curve(
     times(shortest, longest, takt, count).into_par_iter().filter_map(point).collect()
 }
 
-/// `count` times from the shortest to the longest in equal steps, the nearest one replaced by the takt.
+/// `count` times from the shortest to the longest in equal steps; the takt replaces the nearest one
+/// after the shortest.
 fn times(shortest: f64, longest: f64, takt: f64, count: usize) -> Vec<f64> {
     let step = (longest - shortest) / count.saturating_sub(1).max(1) as f64;
     let mut times: Vec<f64> = (0..count).map(|i| shortest + step * i as f64).collect();
     if takt >= shortest {
         let far = |time: &f64| (time - takt).abs();
-        if let Some(nearest) = times.iter_mut().min_by(|a, b| far(a).total_cmp(&far(b))) {
+        if let Some(nearest) = times.iter_mut().skip(1).min_by(|a, b| far(a).total_cmp(&far(b))) {
             *nearest = takt;
         }
     }

@@ -18,7 +18,7 @@ use crate::retime::optimize::idle::dwells;
 pub(super) fn results(job: Job<'_>, rewritten: Rewritten, leaves_path: bool) -> Retrofit {
     let mut whole =
         whole_cycle(job.model, &job.settings, &job.original.cycle, &rewritten.simulated);
-    if job.settings.form == Form::Streams && !leaves_path {
+    if job.settings.pareto > 0 && job.settings.form == Form::Streams && !leaves_path {
         let Rewritten { candidates, simulated, .. } = &rewritten;
         let takt = whole.optimized.time_s;
         whole.curve = cycle_curve(&job, candidates, simulated, takt, job.settings.pareto);
