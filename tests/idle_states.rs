@@ -11,8 +11,8 @@ use serde_json::Value;
 
 /// Tolerance of a sum of energies, J.
 const ROUNDING_J: f64 = 1e-6;
-/// The same of times, s.
-const ROUNDING_S: f64 = 1e-6;
+/// Rounding of the times of a stream, s.
+const ROUNDING_S: f64 = 1e-3;
 
 const PROGRAM: &str = "MODULE M\n\
     CONST jointtarget jA:=[[0,-12,14,0,60,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n\
