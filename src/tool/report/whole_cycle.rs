@@ -61,11 +61,11 @@ pub(super) fn text(whole: &WholeCycle) -> String {
     };
     let (before, after) = (&whole.original, &whole.optimized);
     let part = |name: &str, of: fn(&TaktEnergy) -> f64| {
-        format!("{name} {:.1} -> {:.1}", of(before), of(after))
+        format!("{name} {:.1} -> {:.1} J", of(before), of(after))
     };
     let state = |rest: &Rest| rest.state.as_ref().map(|name| format!(" in '{name}'"));
     let rest = |rest: &Rest| {
-        format!("{:.1} ({:.3} s{})", rest.energy_j, rest.time_s, state(rest).unwrap_or_default())
+        format!("{:.1} J ({:.3} s{})", rest.energy_j, rest.time_s, state(rest).unwrap_or_default())
     };
     format!(
         "takt {:.3} s, {basis}: {:.1} J -> {:.1} J in a whole takt ({}, {}, {}, {}, rest of the takt \
