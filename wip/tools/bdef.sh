@@ -1,0 +1,1 @@
+cd /work/wt/deferred; CARGO_PROFILE_RELEASE_LTO=off CARGO_PROFILE_RELEASE_DEBUG=0 CARGO_INCREMENTAL=1 timeout 590 nice cargo build --release --features internals --bin joulepath --target-dir /tmp/relinst 2>&1 | grep -E "^(error|warning)" -A9 | head -60
