@@ -10,7 +10,7 @@ use joulepath::retime::optimize::plant::{PathDerivatives, PathShares, Plant, rea
 use joulepath::retime::optimize::polish_problem::PathPenalty;
 use joulepath::retime::optimize::stream_fit::{FittedStream, StreamFit, fit_stream};
 use joulepath::retime::optimize::stream_limits::StreamLimits;
-use joulepath::retime::optimize::stream_polish::{Until, polish_stream};
+use joulepath::retime::optimize::stream_polish::{PolishStatus, Until, polish_stream};
 use joulepath::retime::optimize::stream_reference::Reference;
 use joulepath::retime::optimize::stream_spacing::{Spacing, adaptive_intervals};
 
@@ -386,4 +386,8 @@ fn copper_losses_alone_give_a_stream_with_parabolic_speed() {
         slow.realised.energy.total() > free.realised.energy.total()
             && slow.realised.energy.total() < first
     );
+    // One below the mean speed cannot be kept in this time, and polishing gives up.
+    let hopeless = polish(0.8 * length / time);
+    assert_eq!(hopeless.status, PolishStatus::Stopped);
+    assert!(hopeless.realised.worst_share > 1.0);
 }

@@ -293,6 +293,7 @@ impl RunProblem<'_> {
         let mut margins = Margins::first(self.tolerance(), SPACINGS[0]);
         let begin = |margins: &Margins| self.lengthened(LONGEST, margins);
         let mut found = self.attempts(&mut margins, Until::Kept, &begin, &|_| false)?;
+        // Bisection for its predicate: a longer stream is easier. The shortest one found is kept.
         let _ = SHORTER.partition_point(|share| {
             let fit = self.lengthened(*share, &margins);
             match fit.and_then(|fit| self.realise(fit, &margins, Until::Kept)) {

@@ -149,7 +149,7 @@ mod tests {
 
     /// Step of central differences, rad or rad/s, and their relative tolerance.
     const STEP: f64 = 1e-6;
-    const DIFFERENCES: f64 = 1e-5;
+    const CLOSE: f64 = 1e-5;
 
     /// The derivatives of f by q and by q̇, by central differences.
     fn differences(q: &Joints, qd: &Joints, f: impl Fn(&Joints, &Joints) -> f64) -> [Joints; 2] {
@@ -169,7 +169,7 @@ mod tests {
         let scale = 1.0 + expected.as_flattened().iter().fold(0.0, |a: f64, b| a.max(b.abs()));
         for (by, expected) in by.as_flattened().iter().zip(expected.as_flattened()) {
             let error = (by - expected).abs() / scale;
-            assert!(error < DIFFERENCES, "{what}: {by} instead of {expected}");
+            assert!(error < CLOSE, "{what}: {by} instead of {expected}");
         }
     }
 
