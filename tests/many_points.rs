@@ -52,6 +52,8 @@ fn stream(from: usize) -> EmittedStream {
         pause: None,
         external: [9e9; 6],
         values: Vec::new(),
+        follows: 0,
+        puts_off: None,
         origin: "m.mod".into(),
         before: "1 s 1 J".into(),
         after: "1 s 1 J".into(),
@@ -98,7 +100,7 @@ fn emitted(layout: Layout) -> Vec<SourceFile> {
         recorded: Recorded::default(),
         program: "0".into(),
     };
-    let emitted = emit(&emission, &sites).unwrap();
+    let emitted = emit(&emission, &sites, &[]).unwrap();
     let bytes = text::apply(&file.bytes, &emitted.edits).unwrap();
     let mut files = vec![SourceFile::new(FileId(0), "m.mod".into(), bytes)];
     for (name, text) in emitted.modules {

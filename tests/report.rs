@@ -126,6 +126,7 @@ fn small(path: &str) -> Small {
         let rewritten = kind == SegmentKind::Timing && reason.is_none();
         Segment {
             span: span(&text, part),
+            pieces: vec![span(&text, part)],
             kind,
             rewritten,
             reason,
@@ -152,6 +153,7 @@ fn small(path: &str) -> Small {
     let second = text.rfind(home).unwrap();
     segments[2].span.start = second as u32;
     segments[2].span.end = (second + home.len()) as u32;
+    segments[2].pieces = vec![segments[2].span];
     let retrofit = Retrofit {
         lower_limits: Vec::new(),
         uncertainty: None,

@@ -37,10 +37,12 @@ impl Case {
     fn rewritten(&self, file: usize) -> Vec<Range<usize>> {
         let segments = self.result.segments.iter().filter(|segment| segment.rewritten);
         let mut spans: Vec<Range<usize>> = segments
-            .filter(|segment| segment.span.file.0 as usize == file)
-            .map(|segment| segment.span.start as usize..segment.span.end as usize)
+            .flat_map(|segment| &segment.pieces)
+            .filter(|piece| piece.file.0 as usize == file)
+            .map(|piece| piece.start as usize..piece.end as usize)
             .collect();
         spans.sort_by_key(|span| span.start);
+        spans.dedup();
         spans
     }
 
@@ -85,8 +87,11 @@ impl Case {
     }
 }
 
-/// Comment after the ELSE of a guard.
-const REMARK: &str = " ! after an edit of these lines: joulepath refresh";
+/// Comments after the ELSE of a guard.
+const REMARKS: [&str; 2] = [
+    " ! after an edit of these lines: joulepath refresh",
+    " ! joined with later movements: after an edit of these lines or up to there: joulepath refresh",
+];
 
 /// Removes the guards from an output; the rest has to be the original.
 fn only_guards_added(original: &[u8], output: &[u8], spans: &[Range<usize>]) -> Result<(), String> {
@@ -110,9 +115,11 @@ fn only_guards_added(original: &[u8], output: &[u8], spans: &[Range<usize>]) -> 
         rest = rest
             .strip_prefix(&original[from..span.start])
             .ok_or(format!("bytes before line {place} differ"))?;
-        let otherwise = format!("{end_of_line}{indent}ELSE{REMARK}{end_of_line}{indent}");
-        let head = find_bytes(rest, otherwise.as_bytes())
-            .ok_or(format!("no guard before line {place}"))?;
+        let with = |remark| format!("{end_of_line}{indent}ELSE{remark}{end_of_line}{indent}");
+        let first = REMARKS.map(with).into_iter().filter_map(|otherwise| {
+            find_bytes(rest, otherwise.as_bytes()).map(|head| (head, otherwise))
+        });
+        let (head, otherwise) = first.min().ok_or(format!("no guard before line {place}"))?;
         guard_is_plain(&rest[..head], &format!("{end_of_line}{indent}"))
             .map_err(|why| format!("guard before line {place}: {why}"))?;
         rest = rest[head + otherwise.len()..]
@@ -139,9 +146,16 @@ fn guard_is_plain(head: &[u8], line_break: &str) -> Result<(), String> {
     if asks && calls && one { Ok(()) } else { Err(format!("'{head}'")) }
 }
 
-/// A text without the statements that record loads and settings.
+/// A text without the statements that record loads and settings, and those that make up for
+/// movements that were put off.
 fn without_notes(text: &[u8]) -> Vec<u8> {
     let mut left = text.to_vec();
+    while let Some(begin) = find_bytes(&left, b"jpBack;") {
+        let is_blank = |b: &u8| b.is_ascii_whitespace();
+        let end = begin + b"jpBack;".len();
+        let blanks = left[end..].iter().take_while(|b| is_blank(b)).count();
+        left.drain(begin..end + blanks);
+    }
     while let Some(begin) = find_bytes(&left, b" jpLoad:=") {
         let end = begin + left[begin..].iter().position(|b| *b == b';').unwrap() + 1;
         left.drain(begin..end);

@@ -37,8 +37,8 @@ pub enum Step<'h> {
     Statement(&'h Stmt),
     /// The condition of an `IF`, `ELSEIF` or `WHILE`.
     Condition(&'h Expr),
-    /// The head of a `FOR`: counts, and leaves the loop after the last value.
-    Count,
+    /// The head of this `FOR`: counts, and leaves the loop after the last value.
+    Count(&'h Stmt),
     /// The value of a `TEST`.
     Test(&'h Expr),
 }
@@ -157,7 +157,7 @@ impl<'h> Builder<'h> {
                 // `WHILE TRUE` ends only by a jump, a return or an error.
                 if matches!(condition.kind, ExprKind::Bool(true)) { Ends::new() } else { ends }
             }
-            StmtKind::For { body, .. } => self.repeat(Step::Count, body, &from),
+            StmtKind::For { body, .. } => self.repeat(Step::Count(stmt), body, &from),
             StmtKind::Test { value, cases, default } => {
                 let id = self.node(Step::Test(value), &from);
                 let mut ends = Ends::new();
@@ -222,7 +222,7 @@ mod tests {
                 let name = match node.step {
                     Step::Entry => "entry",
                     Step::Exit => "exit",
-                    Step::Count => "FOR",
+                    Step::Count(_) => "FOR",
                     Step::Statement(stmt) => word(stmt.span.start).unwrap_or(""),
                     Step::Condition(expr) | Step::Test(expr) => word(expr.span.start).unwrap_or(""),
                 };

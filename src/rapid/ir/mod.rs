@@ -12,6 +12,7 @@ pub mod predefined;
 pub mod program;
 pub mod reads;
 pub mod signals;
+pub mod upcoming;
 mod user;
 pub mod value;
 pub mod walk;

@@ -36,11 +36,11 @@ pub enum Reason {
     /// External axes move with it, or may.
     ExternalAxes,
     /// Other statements between fly-by movements.
-    LogicBetween,
+    LogicBetween(String),
     /// An output is set during its last movement, which ends in a fly-by point.
     EarlyOutput,
     /// Fly-by movements that continue in another routine or branch.
-    Scattered,
+    Scattered(String),
     /// Runs that begin or end at different statements in different executions.
     Overlapping,
     /// Its last movement ends in a fly-by point, and a movement may follow: in another branch or at
@@ -101,9 +101,9 @@ impl Reason {
             Reason::Handler(_) => "handler",
             Reason::Interrupt(_) => "interrupt",
             Reason::ExternalAxes => "external-axes",
-            Reason::LogicBetween => "logic-between",
+            Reason::LogicBetween(_) => "logic-between",
             Reason::EarlyOutput => "early-output",
-            Reason::Scattered => "scattered",
+            Reason::Scattered(_) => "scattered",
             Reason::Overlapping => "overlapping",
             Reason::FliesOn => "flies-on",
             Reason::Already => "already",
@@ -182,11 +182,13 @@ impl std::fmt::Display for Reason {
             Reason::ExternalAxes => {
                 "its targets move external axes, or where they stood is not known"
             }
-            Reason::LogicBetween => "other statements stand between fly-by movements",
+            Reason::LogicBetween(what) => &format!("{what} between its fly-by movements"),
             Reason::EarlyOutput => {
                 "an output is set while its last movement, which does not stop, is under way"
             }
-            Reason::Scattered => "its fly-by movements go on in another routine or branch",
+            Reason::Scattered(why) => {
+                &format!("its fly-by movements go on in another routine or branch{why}")
+            }
             Reason::Overlapping => "it begins or ends at another statement in another execution",
             Reason::FliesOn => "it ends in a zone, and what comes behind it may move on",
             Reason::Already => {

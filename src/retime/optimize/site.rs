@@ -1,8 +1,8 @@
 //! Sites: the places of a program where a stream can replace movements.
 //!
-//! A site is a sequence of neighbouring statements of one list that the simulation executed from
-//! one stop point to the next. Each distinct execution (another start, other values of loop
-//! variables or parameters) is a variant.
+//! A site is the sequence of statements that the simulation executed from one stop point to the
+//! next. It consists of pieces: neighbouring statements of one list that each run has all of or none.
+//! Each distinct execution (another start, other values of loop variables or parameters) is a variant.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -21,14 +21,34 @@ use crate::retime::path::joint_path::{DOF, JointPath, Joints, PieceKind};
 /// A place of the program with its variants.
 #[derive(Debug)]
 pub struct Site {
-    /// From the first statement to the last one.
+    /// From the first statement to the last one; the first one, if they stand in two files.
     pub span: Span,
+    /// Its pieces in the order of execution.
+    pub pieces: Vec<Piece>,
+    /// The statements that may come next after a piece, in some execution, and do more than compute.
+    pub stops: BTreeSet<Span>,
     /// The distinct variants.
     pub variants: Vec<Variant>,
     /// Why the whole site stays unchanged, if it does.
     pub reason: Option<Reason>,
-    /// The statements of its movements.
-    statements: BTreeSet<Span>,
+}
+
+/// Neighbouring statements that each run has all of or none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Piece {
+    /// Its first statement.
+    pub first: Span,
+    /// Its last statement.
+    pub last: Span,
+    /// Number of statements.
+    pub count: usize,
+}
+
+impl Piece {
+    /// From the first statement to the last one.
+    pub fn span(&self) -> Span {
+        self.first.to(self.last)
+    }
 }
 
 /// One distinct execution of a site.
@@ -50,28 +70,30 @@ const SAME_START: f64 = 1e-6;
 /// The sites of a simulated program in source order.
 pub fn sites(program: &Program, simulation: &Simulation) -> Vec<Site> {
     let places = Places::new(program);
-    let mut sites: BTreeMap<(Span, Span), Site> = BTreeMap::new();
+    let cuts = Cuts::new(&places, simulation);
+    let mut sites: BTreeMap<Vec<Piece>, Site> = BTreeMap::new();
     let mut first = true;
     let joined = joined_by_repetition(simulation);
     for (index, event) in simulation.events.iter().enumerate() {
         let What::Run(run) = &event.what else { continue };
-        let (Some(head), Some(tail)) = (run.moves.first(), run.moves.last()) else { continue };
-        let (head, tail) = (head.movement.span, tail.movement.span);
+        let pieces = cuts.pieces(run);
+        let (Some(head), Some(tail)) = (pieces.first(), pieces.last()) else { continue };
+        let (head, tail) = (head.first, tail.last);
         let reason = eligibility(run, std::mem::take(&mut first))
             .err()
-            .or_else(|| places.neighbours(run).err())
+            .or_else(|| places.in_compact_if(run).then_some(Reason::CompactIf))
             .or_else(|| sets_output_in_motion(simulation, index).then_some(Reason::EarlyOutput))
             .or_else(|| joined.contains(&index).then_some(Reason::FliesOn))
             .or_else(|| places.ends_in_fly_by(run).then_some(Reason::FliesOn));
-        let same_file = head.file == tail.file;
-        let span = if same_file { head.to(tail) } else { head };
-        let site = sites.entry((head, tail)).or_insert_with(|| Site {
+        let is_forward = head.file == tail.file && head.start <= tail.start;
+        let span = if is_forward { head.to(tail) } else { head };
+        let site = sites.entry(pieces.clone()).or_insert_with(|| Site {
             span,
+            pieces,
+            stops: BTreeSet::new(),
             variants: Vec::new(),
             reason: None,
-            statements: BTreeSet::new(),
         });
-        site.statements.extend(run.moves.iter().map(|record| record.movement.span));
         let arguments = arguments(run);
         let known = site.variants.iter_mut().find(|variant| {
             let other = variant.events.first().map(|i| &simulation.events[*i].what);
@@ -89,7 +111,6 @@ pub fn sites(program: &Program, simulation: &Simulation) -> Vec<Site> {
         }
     }
     let mut sites: Vec<Site> = sites.into_values().collect();
-    mark_overlaps(&mut sites);
     for site in &mut sites {
         let n = site.variants.len();
         if n > MAX_VARIANTS && site.reason.is_none() {
@@ -97,6 +118,38 @@ pub fn sites(program: &Program, simulation: &Simulation) -> Vec<Site> {
         }
     }
     sites
+}
+
+/// Marks sites that share a statement, and sites of several pieces: without a guard at each piece
+/// only one of the former could be replaced, and none of the latter.
+pub fn mark_joined(program: &Program, sites: &mut [Site]) {
+    let places = Places::new(program);
+    let mut users: BTreeMap<Piece, usize> = BTreeMap::new();
+    for piece in sites.iter().flat_map(|site| site.pieces.iter().collect::<BTreeSet<_>>()) {
+        *users.entry(*piece).or_default() += 1;
+    }
+    for site in sites {
+        if site.pieces.iter().any(|piece| users[piece] > 1) {
+            site.reason.get_or_insert(Reason::Overlapping);
+        }
+        if site.pieces.len() > 1 {
+            site.refuse(&places.between(&site.pieces));
+        }
+    }
+}
+
+impl Site {
+    /// Refuses the variants that have no other reason.
+    pub fn refuse(&mut self, reason: &Reason) {
+        for variant in &mut self.variants {
+            variant.reason.get_or_insert_with(|| reason.clone());
+        }
+    }
+}
+
+/// The statements of compact IFs, which hold one statement only.
+pub fn in_compact_ifs(program: &Program) -> BTreeSet<Span> {
+    Places::new(program).compact
 }
 
 /// Whether an output is set during the movements of a run.
@@ -127,20 +180,6 @@ fn joined_by_repetition(simulation: &Simulation) -> Vec<usize> {
     let from = simulation.repeats_from.unwrap_or(0);
     let first = runs().map(|(index, _)| index).find(|index| *index >= from);
     std::iter::once(last).chain(first).collect()
-}
-
-/// Marks sites that share a statement: only one of them could be replaced.
-fn mark_overlaps(sites: &mut [Site]) {
-    let mut users: BTreeMap<Span, usize> = BTreeMap::new();
-    for statement in sites.iter().flat_map(|site| &site.statements) {
-        *users.entry(*statement).or_default() += 1;
-    }
-    for site in sites {
-        let shared = site.statements.iter().any(|statement| users[statement] > 1);
-        if shared && site.reason.is_none() {
-            site.reason = Some(Reason::Overlapping);
-        }
-    }
 }
 
 fn same(a: &Run, b: &Run) -> bool {
@@ -325,23 +364,79 @@ impl Places {
         place.is_none_or(|(list, index)| !self.stops.contains(&(*list, index + 1)))
     }
 
-    /// Whether the statements of a run are consecutive in one list.
-    fn neighbours(&self, run: &Run) -> Result<(), Reason> {
-        if run.moves.iter().any(|record| self.compact.contains(&record.movement.span)) {
-            return Err(Reason::CompactIf);
+    /// Whether a movement of a run is the statement of a compact IF.
+    fn in_compact_if(&self, run: &Run) -> bool {
+        run.moves.iter().any(|record| self.compact.contains(&record.movement.span))
+    }
+
+    /// Whether a statement follows another directly.
+    fn is_next(&self, a: Span, b: Span) -> bool {
+        match (self.by_span.get(&a), self.by_span.get(&b)) {
+            (Some((a, i)), Some((b, k))) => a == b && *k == i + 1,
+            _ => false,
         }
-        for pair in run.moves.windows(2) {
-            let place = |i: usize| self.by_span.get(&pair[i].movement.span);
-            match (place(0), place(1)) {
-                (Some((a, i)), Some((b, k))) if a == b && *k == i + 1 => {}
-                (Some((a, i)), Some((b, k))) if a == b && *k > *i => {
-                    return Err(Reason::LogicBetween);
-                }
-                _ => return Err(Reason::Scattered),
+    }
+
+    /// Why pieces are not one sequence of statements.
+    fn between(&self, pieces: &[Piece]) -> Reason {
+        let is_later = |pair: &[Piece]| {
+            let place = |span: Span| self.by_span.get(&span);
+            match (place(pair[0].last), place(pair[1].first)) {
+                (Some((a, i)), Some((b, k))) => a == b && k > i,
+                _ => false,
+            }
+        };
+        if pieces.windows(2).all(is_later) {
+            Reason::LogicBetween("other statements stand".to_owned())
+        } else {
+            Reason::Scattered(String::new())
+        }
+    }
+}
+
+/// The statements at which some run is cut: the pieces of all runs begin and end there.
+#[derive(Default)]
+struct Cuts {
+    starts: BTreeSet<Span>,
+    ends: BTreeSet<Span>,
+}
+
+impl Cuts {
+    fn new(places: &Places, simulation: &Simulation) -> Cuts {
+        let mut cuts = Cuts::default();
+        for event in &simulation.events {
+            let What::Run(run) = &event.what else { continue };
+            let statements = statements_of(run);
+            cuts.starts.extend(statements.first());
+            cuts.ends.extend(statements.last());
+            for pair in statements.windows(2).filter(|pair| !places.is_next(pair[0], pair[1])) {
+                cuts.ends.insert(pair[0]);
+                cuts.starts.insert(pair[1]);
             }
         }
-        Ok(())
+        cuts
     }
+
+    /// The pieces of a run.
+    fn pieces(&self, run: &Run) -> Vec<Piece> {
+        let mut pieces: Vec<Piece> = Vec::new();
+        for statement in statements_of(run) {
+            match pieces.last_mut() {
+                Some(piece)
+                    if !self.starts.contains(&statement) && !self.ends.contains(&piece.last) =>
+                {
+                    piece.last = statement;
+                    piece.count += 1;
+                }
+                _ => pieces.push(Piece { first: statement, last: statement, count: 1 }),
+            }
+        }
+        pieces
+    }
+}
+
+fn statements_of(run: &Run) -> Vec<Span> {
+    run.moves.iter().map(|record| record.movement.span).collect()
 }
 
 /// Whether a statement waits for a time other than 0.

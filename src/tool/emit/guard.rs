@@ -5,12 +5,16 @@ use std::collections::BTreeSet;
 use serde::Serialize;
 use tera::{Context, Tera};
 
-use super::site::{EmitError, Parameter, Recorded, Site};
+use super::site::{EmitError, Parameter, Recorded, Site, Stop};
 use crate::rapid::ir::number::number;
 use crate::rapid::text::{Charset, Edit, SourceFile, Span};
 
-/// Remark after the ELSE of a guard: the guard does not compare literals in the lines below.
-pub const EDIT_REMARK: &str = " ! after an edit of these lines: joulepath refresh";
+/// Remarks after the ELSE of a guard, without and with movements that are put off: the guard does not
+/// compare literals in the lines below, nor what follows up to the stream.
+pub const EDIT_REMARKS: [&str; 2] = [
+    " ! after an edit of these lines: joulepath refresh",
+    " ! joined with later movements: after an edit of these lines or up to there: joulepath refresh",
+];
 
 /// Maximum length of a line in an inserted condition, characters.
 const LINE: usize = 90;
@@ -42,6 +46,10 @@ pub(super) struct Guard {
     /// Arguments of the function that checks the settings.
     settings: String,
     external: bool,
+    /// Whether movements are put off there.
+    puts_off: bool,
+    /// The remark after its ELSE.
+    remark: &'static str,
     /// Number of instructions in a cycle.
     #[serde(skip)]
     pub(super) instructions: usize,
@@ -76,6 +84,7 @@ pub(super) fn guard(site: &Site, prefix: &str, recorded: &Recorded, index: usize
         .map(|(i, parameter)| part(parameter, prefix, format!("p{}", i + 1)))
         .collect();
     let settings = &site.settings;
+    let puts_off = site.streams.iter().any(|stream| stream.puts_off.is_some());
     let word = |on: bool| if on { "TRUE" } else { "FALSE" };
     Guard {
         label: shortened(&site.origin),
@@ -93,6 +102,8 @@ pub(super) fn guard(site: &Site, prefix: &str, recorded: &Recorded, index: usize
             word(settings.lines),
         ),
         external: site.has_external(),
+        puts_off,
+        remark: EDIT_REMARKS[usize::from(puts_off)],
     }
 }
 
@@ -189,17 +200,13 @@ pub(super) fn insertions(
     span: Span,
     guard: &Guard,
 ) -> Result<[Edit; 2], EmitError> {
-    let before = &file.bytes[..span.start as usize];
-    let line = before.rsplit(|b| matches!(b, b'\n' | b'\r')).next().unwrap_or_default();
-    let blank = line.iter().take_while(|b| matches!(b, b' ' | b'\t'));
-    let indent: String = blank.map(|b| char::from(*b)).collect();
+    let indent = indent(file, span);
     let end_of_line = end_of_line(&file.bytes);
     let mut context = Context::new();
     context.insert("p", prefix);
     context.insert("indent", &indent);
     context.insert("guard", guard);
     let arguments = guard.parts.iter().map(|part| part.text.as_str()).filter(|t| !t.is_empty());
-    context.insert("remark", EDIT_REMARK);
     context.insert("arguments", &lines(arguments, &indent));
     let head = tera.render("guard", &context)?;
     let head = head.strip_suffix('\n').unwrap_or(&head).replace('\n', end_of_line);
@@ -212,6 +219,40 @@ pub(super) fn insertions(
         text: charset.encode(&text).unwrap_or_else(|| text.into_bytes()),
     };
     Ok([insertion(span.start, head), insertion(span.end, tail)])
+}
+
+/// The insertions at a statement before which movements that were put off are made up for.
+/// `is_block`: a compact IF around it becomes a block for another reason.
+pub(super) fn made_up_for(
+    prefix: &str,
+    file: &SourceFile,
+    stop: Stop,
+    is_block: bool,
+) -> Vec<Edit> {
+    let Stop { span, is_compact } = stop;
+    let insertion = |at: u32, text: String| Edit {
+        span: Span { file: span.file, start: at, end: at },
+        text: text.into_bytes(),
+    };
+    match (is_compact, is_block) {
+        (false, _) => {
+            let next = format!("{}{}", end_of_line(&file.bytes), indent(file, span));
+            vec![insertion(span.start, format!("{prefix}Back;{next}"))]
+        }
+        (true, true) => vec![insertion(span.start, format!("{prefix}Back; "))],
+        (true, false) => vec![
+            insertion(span.start, format!("THEN {prefix}Back; ")),
+            insertion(span.end, " ENDIF".to_owned()),
+        ],
+    }
+}
+
+/// The blanks before the first word of a statement's line.
+fn indent(file: &SourceFile, span: Span) -> String {
+    let before = &file.bytes[..span.start as usize];
+    let line = before.rsplit(|b| matches!(b, b'\n' | b'\r')).next().unwrap_or_default();
+    let blank = line.iter().take_while(|b| matches!(b, b' ' | b'\t'));
+    blank.map(|b| char::from(*b)).collect()
 }
 
 /// Comma-separated arguments, broken into lines.
@@ -258,6 +299,8 @@ mod tests {
             pause: None,
             external: [9e9; 6],
             values: Vec::new(),
+            follows: 0,
+            puts_off: None,
             origin: String::new(),
             before: String::new(),
             after: String::new(),

@@ -19,11 +19,12 @@ pub use generated::{
     EGM_STEP_S, GeneratedMove, GeneratedNames, egm_module, egm_rows, generated_module, jointtarget,
     main_module, stream_time,
 };
-pub use guard::{EDIT_REMARK, end_of_line};
+pub use guard::{EDIT_REMARKS, end_of_line};
 pub use layout::Layout;
 pub use names::{Names, has_streams, missing_streams, redeclared_name};
 pub use site::{
-    EmitError, Emitted, EmittedStream, MotionSettings, Parameter, Pause, Recorded, Robot, Site,
+    EmitError, Emitted, EmittedStream, MotionSettings, Parameter, Pause, PutOff, Recorded, Robot,
+    Site, Stop, Word,
 };
 pub use stream_module::{Emission, emit};
 pub use stream_test::{TestStream, stream_test};

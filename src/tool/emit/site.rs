@@ -71,12 +71,43 @@ pub struct EmittedStream {
     pub external: [f64; 6],
     /// Required values of the site's parameters.
     pub values: Vec<Datum>,
+    /// The state of the movements that have to be put off already, 0 for none.
+    pub follows: usize,
+    /// The movements that are put off in place of a stream.
+    pub puts_off: Option<PutOff>,
     /// Origin, for comments.
     pub origin: String,
-    /// Time and energy before, for comments.
+    /// Time and energy of the movements, for comments.
     pub before: String,
-    /// Time and energy after, for comments.
+    /// Time and energy of the stream, for comments.
     pub after: String,
+}
+
+/// A statement before which movements that were put off are made up for.
+#[derive(Clone, Copy, Debug)]
+pub struct Stop {
+    /// The statement.
+    pub span: Span,
+    /// Whether it is the statement of a compact IF.
+    pub is_compact: bool,
+}
+
+/// Movements that are put off: the stream at a later place has them, or they are made up for.
+#[derive(Clone, Debug)]
+pub struct PutOff {
+    /// The state after that, from 1.
+    pub state: usize,
+    /// The statements.
+    pub statements: Vec<Vec<Word>>,
+}
+
+/// A part of a statement.
+#[derive(Clone, Debug)]
+pub enum Word {
+    /// RAPID text.
+    Text(String),
+    /// The value of a parameter of the site, by its index.
+    Parameter(usize),
 }
 
 /// A standstill at a point of a stream.

@@ -3,13 +3,13 @@
 use serde::Serialize;
 use tera::{Context, Tera};
 
-use super::guard::{Guard, guard, insertions, types};
+use super::guard::{Guard, guard, insertions, made_up_for, types};
 use super::layout::{Layout, parts};
 use super::literal::NO_AXIS;
 use super::names::Names;
-use super::site::{EmitError, Emitted, EmittedStream, Recorded, Robot, Site};
+use super::site::{EmitError, Emitted, EmittedStream, Recorded, Robot, Site, Stop, Word};
 use crate::rapid::ir::number::{TIME_DECIMALS, joints, number};
-use crate::rapid::text::{Charset, SourceFile, charset};
+use crate::rapid::text::{Charset, Edit, SourceFile, charset};
 
 /// Maximum joint distance from the start of a stream, degrees: 0.5 mm at an arm stretched to 1.45
 /// m. At a stop point servos are closer.
@@ -49,6 +49,24 @@ struct StreamText {
     /// The number of points, and of those before the last.
     count: usize,
     fly_by: usize,
+    /// The state of the movements that are put off already.
+    follows: usize,
+    puts_off: Option<PutOffText>,
+}
+
+/// Movements that are put off.
+#[derive(Clone, Serialize)]
+struct PutOffText {
+    state: usize,
+    /// The state before.
+    follows: usize,
+    /// Where the robot stands then.
+    from: String,
+    /// Declarations of the tools and work objects of the statements.
+    data: Vec<String>,
+    /// Assignments of the values that these have when the movements are put off.
+    kept: Vec<String>,
+    statements: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -84,11 +102,12 @@ pub struct Emission {
     pub program: String,
 }
 
-/// Renders the streams of the sites.
+/// Renders the streams of the sites. `stops`: statements before which movements that were put off
+/// are made up for.
 ///
 /// # Errors
 /// A value has no RAPID text.
-pub fn emit(emission: &Emission, sites: &[Site]) -> Result<Emitted, EmitError> {
+pub fn emit(emission: &Emission, sites: &[Site], stops: &[Stop]) -> Result<Emitted, EmitError> {
     let Emission { files, names, robot, recorded, .. } = emission;
     let mut tera = Tera::default();
     tera.add_raw_templates(vec![
@@ -106,9 +125,7 @@ pub fn emit(emission: &Emission, sites: &[Site]) -> Result<Emitted, EmitError> {
             .streams
             .iter()
             .enumerate()
-            .map(|(variant, stream)| {
-                stream_text(emission, site, stream, format!("{}_{}", index + 1, variant + 1))
-            })
+            .map(|(variant, stream)| stream_text(emission, site, stream, [index + 1, variant + 1]))
             .collect();
         let file = site.span.file.0 as usize;
         let source = (&files[file], charsets[file]);
@@ -116,6 +133,14 @@ pub fn emit(emission: &Emission, sites: &[Site]) -> Result<Emitted, EmitError> {
         instructions.push(guard.instructions);
         texts.push(SiteText { guard, streams: streams? });
     }
+    for stop in stops {
+        let file = &files[stop.span.file.0 as usize];
+        let ends_here = |edit: &Edit| (edit.span.file, edit.span.start) == (file.id, stop.span.end);
+        let is_block = recorded.edits.iter().any(ends_here);
+        edits.extend(made_up_for(&names.prefix, file, *stop, is_block));
+    }
+    let streams = texts.iter().flat_map(|site| &site.streams);
+    let puts_off: Vec<PutOffText> = streams.filter_map(|stream| stream.puts_off.clone()).collect();
     let mut context = Context::new();
     context.insert("version", env!("CARGO_PKG_VERSION"));
     context.insert("program", &emission.program);
@@ -135,6 +160,7 @@ pub fn emit(emission: &Emission, sites: &[Site]) -> Result<Emitted, EmitError> {
     context.insert("switches", &recorded.switches);
     context.insert("load", &recorded.load);
     context.insert("count", &sites.len());
+    context.insert("puts_off", &puts_off);
     let list = |text: &dyn Fn(&SiteText) -> String| texts.iter().map(text).collect::<Vec<_>>();
     context.insert("labels", &list(&|site| format!("\"{}\"", site.guard.label)).join(","));
     context.insert("zeros", &list(&|_| "0".to_owned()).join(","));
@@ -161,16 +187,40 @@ fn stream_text(
     emission: &Emission,
     site: &Site,
     stream: &EmittedStream,
-    index: String,
+    [guard, way]: [usize; 2],
 ) -> Result<StreamText, EmitError> {
     let made = site.parameters.iter().zip(&stream.values).map(|(parameter, value)| {
         super::literal::literal(value).ok_or_else(|| EmitError::Value(parameter.label.clone()))
     });
-    let count = stream.points.len();
+    let made = made.collect::<Result<Vec<String>, _>>()?;
+    let p = &emission.names.prefix;
+    let puts_off = stream.puts_off.as_ref().map(|put_off| {
+        // The arguments for tool and work object must be persistent data.
+        let own = |k: usize| format!("{p}Own{guard}_{way}_{}", k + 1);
+        let is_kept = |k: usize| matches!(site.parameters[k].type_name, "tooldata" | "wobjdata");
+        let word = |word: &Word| match word {
+            Word::Text(text) => text.clone(),
+            Word::Parameter(k) if is_kept(*k) => own(*k),
+            Word::Parameter(k) => format!("{p}Kept{guard}_{way}.p{}", k + 1),
+        };
+        let statements = put_off.statements.iter();
+        let kept = || (0..site.parameters.len()).filter(|k| is_kept(*k));
+        PutOffText {
+            state: put_off.state,
+            follows: stream.follows,
+            from: format!("{p}From{guard}{{{way}}}"),
+            kept: kept().map(|k| format!("{}:={p}Own{guard}.p{}", own(k), k + 1)).collect(),
+            data: kept()
+                .map(|k| format!("{} {}:={}", site.parameters[k].type_name, own(k), made[k]))
+                .collect(),
+            statements: statements.map(|words| words.iter().map(word).collect()).collect(),
+        }
+    });
+    let points = if puts_off.is_some() { &[][..] } else { stream.points.as_slice() };
+    let count = points.len();
     let last = count.saturating_sub(1);
     let external = stream.external.map(external_axis).join(",");
-    let points = stream
-        .points
+    let points = points
         .iter()
         .zip(&stream.intervals)
         .enumerate()
@@ -189,12 +239,14 @@ fn stream_text(
         before: stream.before.clone(),
         after: stream.after.clone(),
         start: format!("[[{}],[{external}]]", joints(&stream.start)),
-        made: made.collect::<Result<_, _>>()?,
-        index,
+        made,
+        index: format!("{guard}_{way}"),
         points,
         is_array: stream.pause.is_none() && emission.layout.is_array(count),
         count,
         fly_by: last,
+        follows: stream.follows,
+        puts_off,
     })
 }
 

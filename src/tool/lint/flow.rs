@@ -186,7 +186,7 @@ impl<'p> Flow<'p> {
             }
             let (routine, node) = place;
             match self.graph(routine).nodes[node].step {
-                Step::Entry | Step::Count => self.push_next(place, &mut open),
+                Step::Entry | Step::Count(_) => self.push_next(place, &mut open),
                 Step::Exit => self.leave(routine, &mut open, &mut found),
                 Step::Condition(expr) | Step::Test(expr) => {
                     if through == Through::All || self.data_names.has_only_data(routine, expr) {

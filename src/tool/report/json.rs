@@ -3,9 +3,10 @@
 use serde_json::{Value, json};
 
 use super::mark::mark;
-use super::place::Places;
+use super::place::{Place, Places};
 use super::simulated::{Simulated, StepKind};
 use crate::arm::robot::Model;
+use crate::rapid::text::Span;
 use crate::retime::energy::EnergyParts;
 use crate::retime::energy::plausible::{Contribution, Interval};
 use crate::retime::motion::Simulation;
@@ -235,6 +236,10 @@ fn ratios(check: &Check) -> Value {
 
 fn segment_value(places: Places<'_>, segment: &Segment) -> Value {
     let place = places.of(segment.span);
+    let piece = |span: &Span| {
+        let Place { file, first, last } = places.of(*span);
+        json!({ "file": file, "line_first": first, "line_last": last })
+    };
     let mut value = json!({
         "file": place.file,
         "line_first": place.first,
@@ -256,6 +261,9 @@ fn segment_value(places: Places<'_>, segment: &Segment) -> Value {
         "points": segment.points,
         "potential_j": segment.potential_j,
     });
+    if segment.pieces.len() > 1 {
+        value["pieces"] = segment.pieces.iter().map(piece).collect();
+    }
     if !segment.pareto.is_empty() {
         let point = |point: &TimeEnergy| {
             json!({

@@ -36,14 +36,32 @@ impl<'a> Places<'a> {
             None => Place { file: String::new(), first: 0, last: 0 },
         }
     }
+
+    /// The places of the pieces of a run, the first few of many.
+    pub fn of_pieces(&self, pieces: &[Span]) -> String {
+        let mut file = None;
+        let places = pieces.iter().take(MAX_PIECES).map(|piece| {
+            let place = self.of(*piece);
+            let is_named = file.replace(piece.file) == Some(piece.file);
+            if is_named { place.lines() } else { place.to_string() }
+        });
+        let text = places.collect::<Vec<_>>().join(", ");
+        if pieces.len() > MAX_PIECES { text + " …" } else { text }
+    }
+}
+
+/// Maximum number of pieces that are listed.
+const MAX_PIECES: usize = 3;
+
+impl Place {
+    fn lines(&self) -> String {
+        let Place { first, last, .. } = self;
+        if first == last { first.to_string() } else { format!("{first}-{last}") }
+    }
 }
 
 impl std::fmt::Display for Place {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        if self.first == self.last {
-            write!(f, "{}:{}", self.file, self.first)
-        } else {
-            write!(f, "{}:{}-{}", self.file, self.first, self.last)
-        }
+        write!(f, "{}:{}", self.file, self.lines())
     }
 }

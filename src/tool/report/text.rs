@@ -187,7 +187,7 @@ fn segment_row(places: Places<'_>, segment: &Segment) -> Vec<String> {
         let _ = write!(reason, " ({:.1} J)", segment.potential_j);
     }
     vec![
-        places.of(segment.span).to_string(),
+        places.of_pieces(&segment.pieces),
         what.to_owned(),
         runs,
         format!("{:.3}", segment.time_before_s),

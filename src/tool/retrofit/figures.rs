@@ -64,6 +64,8 @@ pub enum SegmentKind {
 pub struct Segment {
     /// The statements.
     pub span: Span,
+    /// The pieces of a run that goes on elsewhere, in the order of execution; otherwise the span.
+    pub pieces: Vec<Span>,
     /// The kind.
     pub kind: SegmentKind,
     /// Whether its executed RAPID code has changed.
@@ -99,6 +101,7 @@ impl Segment {
     pub(super) fn new(span: Span, kind: SegmentKind, reason: Option<Reason>) -> Segment {
         Segment {
             span,
+            pieces: vec![span],
             kind,
             rewritten: false,
             reason,

@@ -3,8 +3,8 @@
 use super::candidate::{Candidate, State, with_stream};
 use super::figures::INSTRUCTION_MS;
 use super::job::Job;
+use super::outputs::Guarded;
 use super::settings::{Budget, Objective};
-use crate::rapid::text::Span;
 use crate::retime::energy::power::holding_w;
 use crate::retime::optimize::reason::Reason;
 
@@ -12,20 +12,23 @@ use crate::retime::optimize::reason::Reason;
 const MAX_SHARE: f64 = 0.005;
 
 /// Refuses the candidates of sites whose guards cost more than their streams save; if all guards
-/// together take too long, also those that save least per guard time. `guards`: places and
-/// instructions in a cycle.
+/// together take too long, also those that save least per guard time. `guards`: those of
+/// the emitted program.
 pub(super) fn costly(
     job: &Job<'_>,
     candidates: &[Candidate],
-    guards: &[(Span, usize)],
+    guards: &[Guarded],
 ) -> Vec<(usize, State)> {
     let Job { original, model, settings, .. } = job;
     // Site, time of its guards in a cycle (s), saving per guard time (J/s, or s/s).
     let mut worth: Vec<(usize, f64, f64)> = Vec::new();
     let mut costly = Vec::new();
-    for (index, site) in original.sites.iter().enumerate() {
-        let Some((_, count)) = guards.iter().find(|(span, _)| *span == site.span) else { continue };
-        let time = 1e-3 * INSTRUCTION_MS * *count as f64;
+    for index in 0..original.sites.len() {
+        let count: f64 = guards.iter().map(|guard| guard.instructions_of(index)).sum();
+        if count == 0.0 || !with_stream(candidates).any(|(_, own)| own.site == index) {
+            continue;
+        }
+        let time = 1e-3 * INSTRUCTION_MS * count;
         let gains = candidates.iter().filter(|c| c.site == index).filter_map(|candidate| {
             let retiming = candidate.retiming()?;
             let run = original.run(candidate)?;

@@ -86,6 +86,25 @@ impl<'p> Guards<'p> {
         run.moves.len() > 1 && arguments.into_iter().any(may_raise)
     }
 
+    pub(super) fn files(&self) -> &'p [Source] {
+        self.files
+    }
+
+    /// Whether the value of an expression in a routine is the same before and during a movement, and
+    /// its evaluation changes nothing.
+    pub(super) fn is_steady(&self, routine: RoutineId, expr: &Expr) -> bool {
+        let reads = reads(self.program, routine, expr);
+        reads.effect.is_none()
+            && reads.signals.is_empty()
+            && reads.data.is_disjoint(&self.meanwhile)
+            && (!reads.by_reference || self.meanwhile.is_empty())
+    }
+
+    /// Whether the evaluation of an expression in a routine may end in an error.
+    pub(super) fn may_raise_at(&self, routine: RoutineId, expr: &Expr) -> bool {
+        reads(self.program, routine, expr).may_raise
+    }
+
     /// Why an argument prevents a stream. `later`: it is evaluated during the run, when its value
     /// may differ from the one that the guard compared.
     fn objection(&self, argument: &Argument, later: bool) -> Option<Reason> {

@@ -5,22 +5,24 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::guards::Guards;
 use super::interrupts::interrupt_hazard;
+use super::joined::mark_pieces;
 use super::settings::Form;
 use super::statements::calls;
 use crate::rapid::builtins::{self, Cause, is_movement};
 use crate::rapid::ir::hir::{BinaryOp, Block, Callee, Expr, ExprKind, Routine, StmtKind};
 use crate::rapid::ir::movement::Stop;
-use crate::rapid::ir::program::Program;
+use crate::rapid::ir::program::{Program, RoutineId};
 use crate::rapid::text::Span;
 use crate::retime::motion::Simulation;
 use crate::retime::motion::timeline::{Run, What};
 use crate::retime::optimize::reason::Reason;
-use crate::retime::optimize::site::{Site, not_constant, sites};
+use crate::retime::optimize::site::{Site, mark_joined, not_constant, sites};
 use crate::tool::emit;
 
 /// The sites of a program; sites and variants that cannot be streams have a reason.
 pub(super) fn marked_sites(
     program: &Program,
+    entry: RoutineId,
     simulation: &Simulation,
     guards: &Guards<'_>,
     form: Form,
@@ -56,6 +58,12 @@ pub(super) fn marked_sites(
             .or_else(|| whole.clone())
             .or_else(|| runs.find_map(|(run, event)| hazard(run, event)))
             .or_else(|| unguarded.and_then(|(run, _)| varies(run)));
+    }
+    match form {
+        Form::Streams => {
+            mark_pieces(program, entry, guards, argument_error_handler.as_ref(), &mut sites);
+        }
+        Form::Speeds | Form::Guided => mark_joined(program, &mut sites),
     }
     sites
 }

@@ -21,6 +21,7 @@ mod guided;
 mod hazards;
 mod interrupts;
 mod job;
+mod joined;
 mod lower_limits;
 mod lowered;
 mod notes;

@@ -45,7 +45,7 @@ pub fn retrofit(
     let (program, entry) = read_program(files, &settings.entry)?;
     let cycle = Simulated::new(&program, entry, model, &settings.options);
     let guards = Guards::new(&program, files, settings);
-    let sites = marked_sites(&program, &cycle.simulation, &guards, settings.form);
+    let sites = marked_sites(&program, entry, &cycle.simulation, &guards, settings.form);
     let lowered = lowered(&program, entry, model, settings);
     let robots = if settings.point_estimate { None } else { Robots::new(model) };
     let job = Job {

@@ -65,7 +65,7 @@ pub(super) fn results(job: Job<'_>, rewritten: Rewritten, leaves_path: bool) -> 
         uncertainty,
         verification: rewritten.verification,
         signals: signals(&original.cycle.simulation, &simulated.simulation),
-        guard_instructions: outputs.guards.iter().map(|(_, count)| count).sum(),
+        guard_instructions: outputs.guards.iter().map(|guard| guard.instructions).sum(),
         outputs: outputs.files,
         before: (original.cycle.simulation, original.cycle.account),
         after: (simulated.simulation, simulated.account),

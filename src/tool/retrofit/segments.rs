@@ -14,7 +14,7 @@ use crate::retime::motion::timeline::What;
 use crate::retime::optimize::idle::Dwell;
 use crate::retime::optimize::reason::Reason;
 use crate::retime::optimize::retime::PathUse;
-use crate::retime::optimize::site::not_reached;
+use crate::retime::optimize::site::{Piece, not_reached};
 
 /// Shorter dwells are not listed, s: gripper times.
 const SHORTEST_DWELL: f64 = 0.1;
@@ -31,6 +31,7 @@ pub(super) fn segments(
     let mut segments = Vec::new();
     for (index, site) in original.sites.iter().enumerate() {
         let mut segment = Segment::new(site.span, SegmentKind::Timing, None);
+        segment.pieces = site.pieces.iter().map(Piece::span).collect();
         let mut bound = 0.0;
         for candidate in candidates.iter().filter(|candidate| candidate.site == index) {
             let events = original.events(candidate);

@@ -4,14 +4,17 @@
 
 use memchr::memmem;
 
-use crate::rapid::ir::hir::{Block, Expr, ExprKind, Routine, Stmt, StmtKind};
+use crate::rapid::ir::hir::{Block, Callee, Expr, ExprKind, Routine, Stmt, StmtKind};
 use crate::rapid::ir::lower;
 use crate::rapid::syntax;
 use crate::rapid::text::{Edit, SourceFile, Span, apply};
-use crate::tool::emit::EDIT_REMARK;
+use crate::tool::emit::EDIT_REMARKS;
 
 /// Text in the header of each module of streams.
 const HEAD: &[u8] = b"! Joint streams, written by joulepath";
+/// Length of the insertions that make a block of a compact IF.
+const THEN: &[u8] = b" THEN";
+const ENDIF: &[u8] = b" ENDIF";
 /// The declaration that follows the prefix.
 const COUNTERS: &[u8] = b"ByStream{";
 
@@ -60,6 +63,7 @@ impl StreamRemover<'_> {
                     _ => {}
                 },
                 StmtKind::Assign { target, .. } if self.is_own(target) => self.note(stmt.span),
+                StmtKind::Call(call) if self.makes_up(&call.callee) => self.made_up_for(stmt.span),
                 _ => {}
             }
             for inner in stmt.kind.blocks() {
@@ -79,6 +83,18 @@ impl StreamRemover<'_> {
         rest.is_some_and(|number| number.parse::<usize>().is_ok())
     }
 
+    /// Whether a call makes up for movements that were put off.
+    fn makes_up(&self, callee: &Callee) -> bool {
+        matches!(callee, Callee::Name(name) if name.key.strip_prefix(&self.prefix) == Some("back"))
+    }
+
+    /// Deletes such a call, with the blanks up to the next statement.
+    fn made_up_for(&mut self, span: Span) {
+        let rest = &self.bytes[span.end as usize..];
+        let blanks = rest.iter().take_while(|b| b.is_ascii_whitespace()).count();
+        self.delete(span, span.start as usize, span.end as usize + blanks);
+    }
+
     /// Deletes a guard: the text through the line of ELSE, and ENDIF with its line.
     fn guard(&mut self, stmt: &Stmt, original: &Block) {
         let (Some(first), Some(last)) = (original.first(), original.last()) else { return };
@@ -87,9 +103,8 @@ impl StreamRemover<'_> {
             return;
         };
         let mut end = stmt.span.start as usize + at + 4;
-        if self.bytes[end..].starts_with(EDIT_REMARK.as_bytes()) {
-            end += EDIT_REMARK.len();
-        }
+        let has = |remark: &&&str| self.bytes[end..].starts_with(remark.as_bytes());
+        end += EDIT_REMARKS.iter().find(has).map_or(0, |remark| remark.len());
         let is_end = |b: &u8| matches!(b, b'\r' | b'\n');
         let is_blank = |b: &u8| matches!(b, b' ' | b'\t');
         let eol = match &self.bytes[end..] {
@@ -117,19 +132,31 @@ impl StreamRemover<'_> {
         self.delete(span, start - space, span.end as usize);
     }
 
-    /// Restores a compact IF that was extended for a record.
+    /// Restores a compact IF that became a block for an inserted statement.
     fn compact(&mut self, stmt: &Stmt, condition: &Expr, body: &Block) {
-        let [_, Stmt { kind: StmtKind::Assign { target, .. }, span }] = body.as_slice() else {
-            return;
+        let is_back =
+            |stmt: &Stmt| matches!(&stmt.kind, StmtKind::Call(call) if self.makes_up(&call.callee));
+        let is_record = |stmt: &Stmt| matches!(&stmt.kind, StmtKind::Assign { target, .. } if self.is_own(target));
+        let (back, own) = match body.as_slice() {
+            [first, own @ ..] if is_back(first) => (Some(first), own),
+            own => (None, own),
         };
-        let (begin, end) = (condition.span.end as usize, stmt.span.end as usize);
-        let (then, endif) = (b" THEN", b" ENDIF");
-        let is_inserted = self.bytes[begin..].starts_with(then)
-            && self.bytes[span.end as usize..end] == endif[..]
-            && !self.bytes[begin..end].iter().any(|b| matches!(b, b'\r' | b'\n'));
-        if self.is_own(target) && is_inserted {
-            self.delete(stmt.span, begin, begin + then.len());
-            self.delete(stmt.span, end - endif.len(), end);
+        let (then, last) = match (back, own) {
+            (_, [_, record]) if is_record(record) => {
+                (condition.span.end as usize..(condition.span.end as usize + THEN.len()), record)
+            }
+            (Some(back), [last]) => {
+                (back.span.start as usize - THEN.len()..back.span.start as usize, last)
+            }
+            _ => return,
+        };
+        let (begin, end) = (last.span.end as usize, stmt.span.end as usize);
+        let has_then =
+            self.bytes.get(then.clone()).is_some_and(|text| text.trim_ascii() == THEN.trim_ascii());
+        let in_line = !self.bytes[then.start..end].iter().any(|b| matches!(b, b'\r' | b'\n'));
+        if has_then && in_line && self.bytes[begin..end] == *ENDIF {
+            self.delete(stmt.span, then.start, then.end);
+            self.delete(stmt.span, begin, end);
         }
     }
 

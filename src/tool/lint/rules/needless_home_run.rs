@@ -138,7 +138,7 @@ fn does_nothing_else(context: &Context<'_>, site: &Site<'_>) -> bool {
             GraphStep::Statement(stmt) => {
                 stmt.span == site.stmt.span || matches!(stmt.kind, StmtKind::Return(None))
             }
-            GraphStep::Condition(_) | GraphStep::Test(_) | GraphStep::Count => false,
+            GraphStep::Condition(_) | GraphStep::Test(_) | GraphStep::Count(_) => false,
             GraphStep::Entry | GraphStep::Exit => true,
         })
 }

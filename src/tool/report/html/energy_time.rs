@@ -40,7 +40,7 @@ pub(super) fn energy_time(retrofit: &Retrofit, places: Places<'_>) -> Option<Str
             let n = segment.executions as f64;
             Point {
                 number,
-                name: places.of(segment.span).to_string(),
+                name: places.of_pieces(&segment.pieces),
                 rewritten: segment.rewritten,
                 before: [segment.time_before_s / n, segment.energy_before_j / n],
                 after: [segment.time_after_s / n, segment.energy_after_j / n],

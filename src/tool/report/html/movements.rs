@@ -25,12 +25,12 @@ const SIZE: Size = Size { width: 620.0, height: 250.0 };
 pub(super) fn movements(retrofit: &Retrofit, model: &Model, places: Places<'_>) -> Vec<Value> {
     let rewritten: Vec<_> = numbered(retrofit)
         .filter(|(_, segment)| segment.rewritten)
-        .map(|(number, segment)| (number, segment.span, ways(retrofit, segment)))
+        .map(|(number, segment)| (number, segment, ways(retrofit, segment)))
         .collect();
     let least = least_plotted(retrofit, rewritten.iter().flat_map(|(.., ways)| ways));
     rewritten
         .into_iter()
-        .map(|(number, span, ways)| {
+        .map(|(number, segment, ways)| {
             let all = ways.len();
             let plotted: Vec<Value> = ways
                 .iter()
@@ -40,7 +40,7 @@ pub(super) fn movements(retrofit: &Retrofit, model: &Model, places: Places<'_>) 
                 .collect();
             json!({
                 "number": number,
-                "place": places.of(span).to_string(),
+                "place": places.of_pieces(&segment.pieces),
                 // Variants without plots.
                 "left_out": all - plotted.len(),
                 "ways": plotted,

@@ -54,7 +54,7 @@ pub(super) fn segments(retrofit: &Retrofit, places: Places<'_>) -> Value {
     let listed = listed.fold(Sums::default(), |sum, costs| sum.with(costs, 1.0));
     let rows = numbered(retrofit).map(|(number, segment)| row(number, segment, places));
     let not_reached = retrofit.segments.iter().filter(|segment| segment.executions == 0);
-    let not_reached = not_reached.map(|segment| places.of(segment.span).to_string());
+    let not_reached = not_reached.map(|segment| places.of_pieces(&segment.pieces));
     json!({
         "rows": rows.collect::<Vec<_>>(),
         // The wait that the padding adds to the original.
@@ -79,7 +79,7 @@ pub(super) fn numbered(retrofit: &Retrofit) -> impl Iterator<Item = (usize, &Seg
 fn row(number: usize, segment: &Segment, places: Places<'_>) -> Value {
     json!({
         "number": number,
-        "place": places.of(segment.span).to_string(),
+        "place": places.of_pieces(&segment.pieces),
         "kind": match segment.kind {
             SegmentKind::Timing => "movement",
             SegmentKind::Path => "free movement",

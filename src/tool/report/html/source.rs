@@ -1,6 +1,6 @@
 //! The original source with the energy of each line.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::{Value, json};
 
@@ -37,9 +37,12 @@ impl Costs {
         self.streams.insert(first, (last, energy));
     }
 
-    /// Whether a line now runs as a stream.
-    fn is_streamed(&self, line: u32) -> bool {
-        self.streams.range(..=line).next_back().is_some_and(|(_, (end, _))| line <= *end)
+    /// Adds the energy of a movement or wait that is no stream to its line, or to the streams there.
+    fn add_other(&mut self, line: u32, energy: f64) {
+        match self.streams.range_mut(..=line).next_back().filter(|(_, (end, _))| line <= *end) {
+            Some((_, (_, joules))) => *joules += energy,
+            None => *self.after.entry(line).or_default() += energy,
+        }
     }
 }
 
@@ -58,13 +61,18 @@ pub(super) fn sources(retrofit: &Retrofit, files: &[SourceFile]) -> Vec<Value> {
 
 fn streams(retrofit: &Retrofit, files: &[SourceFile], all: &mut [Costs]) {
     for segment in retrofit.segments.iter().filter(|segment| segment.rewritten) {
-        let Some((costs, [first, last])) = at_span(files, all, segment.span) else { continue };
-        costs.add_stream(first, last, segment.energy_after_j);
+        // The stream is at the last piece.
+        for (rest, piece) in segment.pieces.iter().rev().enumerate() {
+            let Some((costs, [first, last])) = at_span(files, all, *piece) else { continue };
+            costs.add_stream(first, last, if rest == 0 { segment.energy_after_j } else { 0.0 });
+        }
     }
 }
 
 fn moves_and_waits(retrofit: &Retrofit, files: &[SourceFile], all: &mut [Costs]) {
     let (before, after) = (&retrofit.before.1.events, &retrofit.after.1.events);
+    let rewritten = retrofit.segments.iter().filter(|segment| segment.rewritten);
+    let counted: BTreeSet<usize> = rewritten.flat_map(|it| it.events.iter().copied()).collect();
     for (i, event) in retrofit.before.0.events.iter().enumerate() {
         let spans: Vec<Span> = match &event.what {
             What::Run(run) => run.moves.iter().map(|record| record.movement.span).collect(),
@@ -77,8 +85,8 @@ fn moves_and_waits(retrofit: &Retrofit, files: &[SourceFile], all: &mut [Costs])
                 events.get(i).and_then(|parts| parts.get(k)).map_or(0.0, EnergyParts::energy_j)
             };
             *costs.before.entry(line).or_default() += energy(before);
-            if !costs.is_streamed(line) {
-                *costs.after.entry(line).or_default() += energy(after);
+            if !counted.contains(&i) {
+                costs.add_other(line, energy(after));
             }
         }
     }
@@ -184,8 +192,12 @@ mod tests {
         }
         let cells: Vec<_> = costs.streams.iter().map(|(k, v)| (*k, v.0, v.1)).collect();
         assert_eq!(cells, [(10, 12, 2.0), (13, 21, 3.0)]);
-        let streamed: Vec<u32> = (0..30).filter(|line| costs.is_streamed(*line)).collect();
-        assert_eq!(streamed, (10..=21).collect::<Vec<u32>>());
+        for line in [9, 11, 21, 22] {
+            costs.add_other(line, 1.0);
+        }
+        assert_eq!(costs.after.into_iter().collect::<Vec<_>>(), [(9, 1.0), (22, 1.0)]);
+        let cells: Vec<f64> = costs.streams.values().map(|(_, energy)| *energy).collect();
+        assert_eq!(cells, [3.0, 4.0]);
     }
 
     #[test]

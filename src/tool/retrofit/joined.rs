@@ -1,0 +1,129 @@
+//! Runs of several pieces: what the program may do between two pieces.
+//!
+//! The stream of such a run stands at its last piece. At the pieces before, the movements are put
+//! off. That is right only where the program certainly goes on without a stop, an output or another
+//! effect; where another statement may come first, the movements are made up for before it.
+
+use super::files::file_and_line;
+use super::guards::Guards;
+use crate::rapid::builtins::instruction;
+use crate::rapid::ir::graph::Step;
+use crate::rapid::ir::hir::{Arg, Callee, DataKind, Expr, ParamMode, Scope, Stmt, StmtKind};
+use crate::rapid::ir::program::{Program, RoutineId, Symbol};
+use crate::rapid::ir::upcoming::{Quiet, Unknown, Upcoming};
+use crate::rapid::text::Span;
+use crate::retime::optimize::reason::Reason;
+use crate::retime::optimize::site::Site;
+
+/// Sets the stops of sites of several pieces, and refuses those that cannot be put off.
+/// `error_handler`: why an error between two pieces would be handled.
+pub(super) fn mark_pieces(
+    program: &Program,
+    entry: RoutineId,
+    guards: &Guards<'_>,
+    error_handler: Option<&Reason>,
+    sites: &mut [Site],
+) {
+    if sites.iter().all(|site| site.pieces.len() == 1) {
+        return;
+    }
+    let between = Between { program, guards, error_handler: error_handler.is_some() };
+    let upcoming = Upcoming::new(program, entry);
+    let place = |span: Span| file_and_line(guards.files(), span);
+    for site in sites.iter_mut().filter(|site| site.pieces.len() > 1) {
+        let stops = site.pieces.windows(2).map(|pair| {
+            let after = upcoming.after(pair[0].last, &|id, step| between.quiet(id, step));
+            match after {
+                Ok(after) if after.contains(&pair[1].first) => Ok(after),
+                Ok(after) => {
+                    let places: Vec<String> = after.into_iter().take(NAMED).map(place).collect();
+                    Err(Reason::LogicBetween(format!("{} runs", places.join(" or "))))
+                }
+                Err(Unknown::Decision(span)) => Err(Reason::Scattered(format!(
+                    ", and {} decides by what may change while the robot moves",
+                    place(span)
+                ))),
+                Err(Unknown::End(id)) => Err(Reason::Scattered(format!(
+                    ", and not only a call may start {}",
+                    program.routine(id).name.text
+                ))),
+            }
+        });
+        match stops.collect::<Result<Vec<_>, _>>() {
+            Ok(stops) => site.stops = stops.into_iter().flatten().collect(),
+            Err(reason) => site.refuse(&reason),
+        }
+    }
+}
+
+/// Maximum number of statements that a reason names.
+const NAMED: usize = 2;
+
+struct Between<'a, 'p> {
+    program: &'p Program,
+    guards: &'a Guards<'p>,
+    /// Whether the program handles errors of arguments: an error would then come before the
+    /// movements that are put off.
+    error_handler: bool,
+}
+
+impl Between<'_, '_> {
+    /// Whether nobody can tell if a step runs before or during a movement.
+    fn quiet(&self, routine: RoutineId, step: Step<'_>) -> Quiet {
+        let is_quiet = match step {
+            Step::Entry | Step::Exit => true,
+            Step::Condition(expr) | Step::Test(expr) => self.is_steady(routine, expr),
+            Step::Count(stmt) | Step::Statement(stmt) => self.statement(routine, stmt),
+        };
+        if is_quiet { Quiet::Yes } else { Quiet::No }
+    }
+
+    fn statement(&self, routine: RoutineId, stmt: &Stmt) -> bool {
+        let does_no_more = match &stmt.kind {
+            StmtKind::Assign { target, .. } => self.is_own(routine, target),
+            StmtKind::Call(call) => match &call.callee {
+                Callee::Late(_) => false,
+                Callee::Name(name) => match self.program.resolve(routine.module, &name.key) {
+                    Some(Symbol::Routine(_)) => true,
+                    Some(_) => false,
+                    None => instruction(&name.key).is_some_and(|it| {
+                        let writes = call.args.iter().filter_map(Arg::value);
+                        it.on_the_fly
+                            && !it.changes_motion
+                            && (!it.may_write()
+                                || writes.into_iter().all(|to| self.is_own(routine, to)))
+                    }),
+                },
+            },
+            StmtKind::For { .. }
+            | StmtKind::Goto(_)
+            | StmtKind::Label(_)
+            | StmtKind::Return(_)
+            | StmtKind::Data(_) => true,
+            _ => false,
+        };
+        does_no_more && stmt.kind.exprs().into_iter().all(|expr| self.is_steady(routine, expr))
+    }
+
+    fn is_steady(&self, routine: RoutineId, expr: &Expr) -> bool {
+        let may_raise = self.error_handler && self.guards.may_raise_at(routine, expr);
+        !may_raise && self.guards.is_steady(routine, expr)
+    }
+
+    /// Whether no other task can see this data: persistent data of the task or of all tasks are seen
+    /// from outside.
+    fn is_own(&self, routine: RoutineId, target: &Expr) -> bool {
+        let Some(name) = target.base() else { return true };
+        let mut params = self.program.routine(routine).params.iter();
+        if let Some(param) = params.find(|param| param.name.key == name.key) {
+            return param.mode == ParamMode::In;
+        }
+        match self.program.resolve(routine.module, &name.key) {
+            Some(Symbol::Data(id)) => {
+                let data = self.program.data(id);
+                data.kind != DataKind::Pers || data.scope == Scope::Local
+            }
+            _ => true,
+        }
+    }
+}
