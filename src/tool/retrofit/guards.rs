@@ -9,7 +9,7 @@ use super::interrupts::written_by_interrupts;
 use super::settings::{Form, Settings};
 use super::statements::calls;
 use crate::rapid::builtins::{Instruction, instruction, is_controller_specific, is_movement};
-use crate::rapid::ir::hir::{Arg, ArgKind, DataKind, Expr, ExprKind, Scope, UnaryOp};
+use crate::rapid::ir::hir::{Arg, ArgKind, Data, DataKind, Expr, ExprKind, Scope, UnaryOp};
 use crate::rapid::ir::movement::Argument;
 use crate::rapid::ir::program::{DataId, Program, RoutineId};
 use crate::rapid::ir::reads::{Reads, reads};
@@ -27,6 +27,8 @@ pub(super) struct Guards<'p> {
     arguments: BTreeMap<Span, (RoutineId, &'p Expr)>,
     /// Data that interrupt routines or other tasks may write at any time.
     meanwhile: BTreeSet<DataId>,
+    /// Data that other tasks may read; `None`: all global `PERS` data.
+    read_elsewhere: Option<BTreeSet<String>>,
     /// Whether movements with inline targets may be replaced.
     inline_targets: bool,
     known: RefCell<BTreeMap<Span, Reads>>,
@@ -66,7 +68,8 @@ impl<'p> Guards<'p> {
             }
         }
         let known = RefCell::default();
-        Guards { program, files, arguments, meanwhile, inline_targets, known }
+        let read_elsewhere = settings.read_elsewhere.clone();
+        Guards { program, files, arguments, meanwhile, read_elsewhere, inline_targets, known }
     }
 
     /// Why no guard can ensure that a run moves as in the original.
@@ -88,6 +91,12 @@ impl<'p> Guards<'p> {
 
     pub(super) fn files(&self) -> &'p [Source] {
         self.files
+    }
+
+    /// Whether another task may read these data at any time.
+    pub(super) fn is_read_elsewhere(&self, data: &Data) -> bool {
+        let is_shared = data.kind == DataKind::Pers && data.scope == Scope::Global;
+        is_shared && self.read_elsewhere.as_ref().is_none_or(|names| names.contains(&data.name.key))
     }
 
     /// Whether the value of an expression in a routine is the same before and during a movement, and

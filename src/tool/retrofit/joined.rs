@@ -4,11 +4,14 @@
 //! off. That is right only where the program certainly goes on without a stop, an output or another
 //! effect; where another statement may come first, the movements are made up for before it.
 
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet};
+
 use super::files::file_and_line;
 use super::guards::Guards;
 use crate::rapid::builtins::instruction;
 use crate::rapid::ir::graph::Step;
-use crate::rapid::ir::hir::{Arg, Callee, DataKind, Expr, ParamMode, Scope, Stmt, StmtKind};
+use crate::rapid::ir::hir::{Arg, Callee, Expr, ParamMode, Stmt, StmtKind};
 use crate::rapid::ir::program::{Program, RoutineId, Symbol};
 use crate::rapid::ir::upcoming::{Quiet, Unknown, Upcoming};
 use crate::rapid::text::Span;
@@ -27,7 +30,12 @@ pub(super) fn mark_pieces(
     if sites.iter().all(|site| site.pieces.len() == 1) {
         return;
     }
-    let between = Between { program, guards, error_handler: error_handler.is_some() };
+    let between = Between {
+        program,
+        guards,
+        error_handler: error_handler.is_some(),
+        shared: RefCell::default(),
+    };
     let upcoming = Upcoming::new(program, entry);
     let place = |span: Span| file_and_line(guards.files(), span);
     for site in sites.iter_mut().filter(|site| site.pieces.len() > 1) {
@@ -35,10 +43,7 @@ pub(super) fn mark_pieces(
             let after = upcoming.after(pair[0].last, &|id, step| between.quiet(id, step));
             match after {
                 Ok(after) if after.contains(&pair[1].first) => Ok(after),
-                Ok(after) => {
-                    let places: Vec<String> = after.into_iter().take(NAMED).map(place).collect();
-                    Err(Reason::LogicBetween(format!("{} runs", places.join(" or "))))
-                }
+                Ok(after) => Err(Reason::LogicBetween(between.named(after))),
                 Err(Unknown::Decision(span)) => Err(Reason::Scattered(format!(
                     ", and {} decides by what may change while the robot moves",
                     place(span)
@@ -65,9 +70,27 @@ struct Between<'a, 'p> {
     /// Whether the program handles errors of arguments: an error would then come before the
     /// movements that are put off.
     error_handler: bool,
+    /// The data of statements that write what another task may read.
+    shared: RefCell<BTreeMap<Span, String>>,
 }
 
 impl Between<'_, '_> {
+    /// The statements of which one runs between two pieces.
+    fn named(&self, statements: BTreeSet<Span>) -> String {
+        let shared = self.shared.borrow();
+        let place = |span: Span| {
+            let place = file_and_line(self.guards.files(), span);
+            match shared.get(&span) {
+                Some(data) => {
+                    format!("{place} (writes {data}; --only-task: no other task reads it)")
+                }
+                None => place,
+            }
+        };
+        let places: Vec<String> = statements.into_iter().take(NAMED).map(place).collect();
+        format!("{} runs", places.join(" or "))
+    }
+
     /// Whether nobody can tell if a step runs before or during a movement.
     fn quiet(&self, routine: RoutineId, step: Step<'_>) -> Quiet {
         let is_quiet = match step {
@@ -80,7 +103,7 @@ impl Between<'_, '_> {
 
     fn statement(&self, routine: RoutineId, stmt: &Stmt) -> bool {
         let does_no_more = match &stmt.kind {
-            StmtKind::Assign { target, .. } => self.is_own(routine, target),
+            StmtKind::Assign { target, .. } => self.is_own(routine, stmt.span, target),
             StmtKind::Call(call) => match &call.callee {
                 Callee::Late(_) => false,
                 Callee::Name(name) => match self.program.resolve(routine.module, &name.key) {
@@ -91,7 +114,7 @@ impl Between<'_, '_> {
                         it.on_the_fly
                             && !it.changes_motion
                             && (!it.may_write()
-                                || writes.into_iter().all(|to| self.is_own(routine, to)))
+                                || writes.into_iter().all(|to| self.is_own(routine, stmt.span, to)))
                     }),
                 },
             },
@@ -110,9 +133,8 @@ impl Between<'_, '_> {
         !may_raise && self.guards.is_steady(routine, expr)
     }
 
-    /// Whether no other task can see this data: persistent data of the task or of all tasks are seen
-    /// from outside.
-    fn is_own(&self, routine: RoutineId, target: &Expr) -> bool {
+    /// Whether no other task can see what a statement writes.
+    fn is_own(&self, routine: RoutineId, statement: Span, target: &Expr) -> bool {
         let Some(name) = target.base() else { return true };
         let mut params = self.program.routine(routine).params.iter();
         if let Some(param) = params.find(|param| param.name.key == name.key) {
@@ -121,7 +143,11 @@ impl Between<'_, '_> {
         match self.program.resolve(routine.module, &name.key) {
             Some(Symbol::Data(id)) => {
                 let data = self.program.data(id);
-                data.kind != DataKind::Pers || data.scope == Scope::Local
+                let is_read = self.guards.is_read_elsewhere(data);
+                if is_read {
+                    self.shared.borrow_mut().insert(statement, data.name.text.clone());
+                }
+                !is_read
             }
             _ => true,
         }
