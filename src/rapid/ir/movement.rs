@@ -153,6 +153,11 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// The `VelSet` override and `AccSet` acceleration and ramp, 1 = 100 %.
+    pub fn shares(&self) -> [f64; 3] {
+        [self.speed_override, self.acceleration, self.ramp]
+    }
+
     /// True for `SingArea\Wrist`: on lines and arcs the wrist axes are interpolated one by one.
     pub fn axiswise_wrist(&self) -> bool {
         self.sing_area.as_ref().is_some_and(|area| area.to_lowercase().ends_with("\\wrist"))

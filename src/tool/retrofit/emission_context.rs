@@ -12,7 +12,9 @@ use crate::rapid::ir::movement::{Argument, Movement};
 use crate::rapid::ir::predefined;
 use crate::rapid::ir::value::Datum;
 use crate::rapid::text::{SourceFile, Span};
-use crate::tool::emit::{Emission, Names, Parameter, Robot};
+use crate::retime::motion::Simulation;
+use crate::retime::motion::timeline::What;
+use crate::tool::emit::{Emission, Names, Now, Parameter, Recorded, Robot};
 
 /// The constant input of all emissions.
 pub(super) struct EmissionContext<'a> {
@@ -34,7 +36,10 @@ impl<'a> EmissionContext<'a> {
             layout: settings.layout,
             robot: robot(model),
             override_percent: 100.0 * settings.options.speed_override.unwrap_or(1.0),
-            recorded: recorded(original.program, original.files, &names),
+            recorded: Recorded {
+                shares: has_shares(&original.cycle.simulation),
+                ..recorded(original.program, original.files, &names)
+            },
             program: hash(&files),
             names,
             files,
@@ -42,6 +47,16 @@ impl<'a> EmissionContext<'a> {
         let beside = original.program.modules[original.entry.module].span.file.0 as usize;
         EmissionContext { files: original.files, beside, guards, emission }
     }
+}
+
+/// Whether a movement runs under `VelSet` or `AccSet` other than 100 %.
+fn has_shares(simulation: &Simulation) -> bool {
+    simulation.events.iter().any(|event| match &event.what {
+        What::Run(run) => {
+            run.moves.iter().any(|record| record.movement.settings.shares() != [1.0; 3])
+        }
+        _ => false,
+    })
 }
 
 /// A hash that identifies a version of the program.
@@ -77,8 +92,15 @@ pub(super) fn place(files: &[Source], span: Span) -> String {
     format!("{} {lines}", ascii(&file.relative))
 }
 
-/// The parameters and values that a guard compares: arguments, and the load if the program changes
-/// it.
+/// The `VelSet` override and `AccSet` as a guard reads them, with their names in messages.
+const SHARES: [(&str, &str); 3] = [
+    ("VelSet", "C_MOTSET.vel.oride"),
+    ("AccSet", "C_MOTSET.acc.acc"),
+    ("AccSet ramp", "C_MOTSET.acc.ramp"),
+];
+
+/// The parameters and values that a guard compares: arguments, the load if the program changes
+/// it, and `VelSet` and `AccSet` if some are not 100 %.
 pub(super) fn compared(
     context: &EmissionContext<'_>,
     arguments: &[Argument],
@@ -89,12 +111,24 @@ pub(super) fn compared(
         let load = movement.settings.grip_load_data.clone();
         let load = load.or_else(|| predefined::lookup("load0").map(|value| value.datum));
         let parameter = Parameter {
-            text: None,
+            now: Now::Load,
             label: "GripLoad".to_owned(),
             type_name: "loaddata",
             is_computed: false,
         };
         compared.extend(load.map(|load| (parameter, load)));
+    }
+    if context.emission.recorded.shares {
+        let shares = SHARES.into_iter().zip(movement.settings.shares());
+        compared.extend(shares.map(|((label, expression), share)| {
+            let parameter = Parameter {
+                now: Now::Anywhere(expression),
+                label: label.to_owned(),
+                type_name: "num",
+                is_computed: false,
+            };
+            (parameter, Datum::Num((100.0 * share).round()))
+        }));
     }
     compared.into_iter().unzip()
 }

@@ -18,7 +18,7 @@ use crate::rapid::syntax::tokenize;
 use crate::rapid::text::Span;
 use crate::retime::motion::timeline::Run;
 use crate::retime::optimize::reason::Reason;
-use crate::tool::emit::Parameter;
+use crate::tool::emit::{Now, Parameter};
 
 /// The arguments of all movements and waits of a program.
 pub(super) struct Guards<'p> {
@@ -158,7 +158,7 @@ impl<'p> Guards<'p> {
             let text = one_line(self.files, argument.span);
             let parameter = Parameter {
                 label: text.clone(),
-                text: Some(text),
+                now: Now::Argument(text),
                 type_name: argument.type_name,
                 is_computed: is_computed(expr),
             };
