@@ -58,7 +58,7 @@ fn emitted(result: &Retrofit, from: &str, to: &str) -> Simulation {
 fn runs(simulation: &Simulation) -> Vec<&Run> {
     let events = simulation.events.iter();
     events
-        .filter_map(|event| if let What::Run(run) = &event.what { Some(run) } else { None })
+        .filter_map(|event| if let What::Run(run) = &event.what { Some(&**run) } else { None })
         .collect()
 }
 
