@@ -104,6 +104,7 @@ fn streams_need_the_setting_that_they_were_made_for() {
         ("VelSet 40,5000;", ["VelSet 50,5000;", "VelSet 30,5000;", "VelSet 40,50;"]),
     ] {
         let result = retrofitted(setting);
+        assert_eq!(streams(&result.after.0), [false, true, true], "{setting}");
         for other in others {
             assert_eq!(streams(&emitted(&result, setting, other)), [false, false, true], "{other}");
         }
