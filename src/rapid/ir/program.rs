@@ -1,7 +1,7 @@
 //! The modules of a task and its symbols.
 
-use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::hir::{
@@ -129,6 +129,12 @@ impl Program {
             let routines = body.routines.iter().enumerate();
             routines.map(move |(index, routine)| (RoutineId { module, index }, routine))
         })
+    }
+
+    /// The statements of compact IFs.
+    pub fn in_compact_ifs(&self) -> BTreeSet<Span> {
+        let statements = self.routines().flat_map(|(_, routine)| routine.statements());
+        statements.filter_map(Stmt::compact).map(|(_, only)| only.span).collect()
     }
 
     /// The declaration.

@@ -42,6 +42,8 @@ pub enum Unknown {
     Decision(Span),
     /// The end of this routine: something else than a call may have started it.
     End(RoutineId),
+    /// The statement is in a BACKWARD or UNDO handler, which no graph contains.
+    Handler,
 }
 
 impl<'p> Upcoming<'p> {
@@ -82,7 +84,7 @@ impl<'p> Upcoming<'p> {
     ) -> Result<BTreeSet<Span>, Unknown> {
         let mut found = BTreeSet::new();
         let mut seen: BTreeSet<Place> = BTreeSet::new();
-        let mut open = self.next(self.places[&stmt]);
+        let mut open = self.next(*self.places.get(&stmt).ok_or(Unknown::Handler)?);
         while let Some(place) = open.pop() {
             if !seen.insert(place) {
                 continue;

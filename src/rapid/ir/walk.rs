@@ -31,6 +31,17 @@ pub fn statements(block: &[Stmt]) -> impl Iterator<Item = &Stmt> {
     })
 }
 
+impl Stmt {
+    /// The condition and the statement of a compact IF: it ends with its only statement, the block
+    /// form with ENDIF.
+    pub fn compact(&self) -> Option<(&Expr, &Stmt)> {
+        let StmtKind::If { branches, otherwise: None } = &self.kind else { return None };
+        let [(condition, inner)] = branches.as_slice() else { return None };
+        let [only] = inner.as_slice() else { return None };
+        (only.span.end == self.span.end).then_some((condition, only))
+    }
+}
+
 impl StmtKind {
     /// The statement lists directly inside the statement.
     pub fn blocks(&self) -> Vec<&Block> {

@@ -35,11 +35,12 @@ pub enum Reason {
     Interrupt(String),
     /// External axes move with it, or may.
     ExternalAxes,
-    /// Other statements between fly-by movements.
+    /// Other statements between fly-by movements: what stands or runs there.
     LogicBetween(String),
     /// An output is set during its last movement, which ends in a fly-by point.
     EarlyOutput,
-    /// Fly-by movements that continue in another routine or branch.
+    /// Fly-by movements that continue in another routine or branch: the end of the sentence that says
+    /// why that is not possible.
     Scattered(String),
     /// Runs that begin or end at different statements in different executions.
     Overlapping,

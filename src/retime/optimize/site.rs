@@ -147,11 +147,6 @@ impl Site {
     }
 }
 
-/// The statements of compact IFs, which hold one statement only.
-pub fn in_compact_ifs(program: &Program) -> BTreeSet<Span> {
-    Places::new(program).compact
-}
-
 /// Whether an output is set during the movements of a run.
 fn sets_output_in_motion(simulation: &Simulation, run: usize) -> bool {
     let before = simulation.events[..run].iter().rev();
@@ -322,7 +317,7 @@ struct Places {
 
 impl Places {
     fn new(program: &Program) -> Places {
-        let mut places = Places::default();
+        let mut places = Places { compact: program.in_compact_ifs(), ..Places::default() };
         let mut lists = 0;
         for module in &program.modules {
             for routine in &module.routines {
@@ -343,12 +338,6 @@ impl Places {
                 self.stops.insert((list, index));
             }
             for inner in stmt.kind.blocks() {
-                // A compact IF ends with its statement; the block form ends with ENDIF.
-                if let Some(last) = inner.last()
-                    && last.span.end == stmt.span.end
-                {
-                    self.compact.insert(last.span);
-                }
                 self.block(inner, lists);
             }
         }

@@ -8,7 +8,7 @@ use super::evaluate::{Change, Cycle, Difference, difference, evaluate};
 use super::flow::{Class, Flow, Next, Place, Through};
 use super::group::Group;
 use super::saving::Evaluation;
-use super::site::{Site, compact, constant, facts_of, site};
+use super::site::{Site, constant, facts_of, site};
 use super::statements::called_name;
 use super::system::System;
 use super::trace::{self, Recording, TraceStep, executions};
@@ -106,15 +106,14 @@ impl<'c> Context<'c> {
         };
         let flow = Flow::new(program, entry);
         let executed = executions(&trace);
-        let compact: BTreeMap<RoutineId, BTreeSet<Span>> =
-            program.routines().map(|(id, routine)| (id, compact(routine))).collect();
+        let compact = program.in_compact_ifs();
         let mut sites = Vec::new();
         for (place, stmt, reachable) in flow.statements() {
             let StmtKind::Call(call) = &stmt.kind else { continue };
             let site = site(program, &flow.data_names, place, stmt, call);
             let Some(mut site) = site else { continue };
             site.reachable = reachable;
-            site.compact = compact[&place.0].contains(&stmt.span);
+            site.compact = compact.contains(&stmt.span);
             site.executions = executed.get(&stmt.span).cloned().unwrap_or_default();
             complete(&mut site, &trace);
             sites.push(site);

@@ -1,14 +1,12 @@
 //! Movement statements, with the facts that the text alone determines.
 
-use std::collections::BTreeSet;
-
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 
 use super::data_names::DataNames;
 use super::flow::Place;
 use crate::rapid::builtins::{MoveForm, MoveKind, MoveSignature, movement};
 use crate::rapid::ir::exec::evaluate;
-use crate::rapid::ir::hir::{ArgKind, Call, Callee, Expr, ExprKind, Routine, Stmt, StmtKind};
+use crate::rapid::ir::hir::{ArgKind, Call, Callee, Expr, ExprKind, Stmt};
 use crate::rapid::ir::movement::{Movement, Speed, Target, Zone};
 use crate::rapid::ir::program::{Program, RoutineId};
 use crate::rapid::ir::value::Datum;
@@ -234,17 +232,6 @@ pub fn facts_of(movement: &Movement) -> Facts {
         Target::Pose(target) => Goal::Pose(target.pose, target.conf),
     };
     Facts { zone: Some(movement.zone), speed: Some(movement.speed), goal: Some(goal) }
-}
-
-/// Spans of the only statements of compact `IF`s.
-pub fn compact(routine: &Routine) -> BTreeSet<Span> {
-    let only = |stmt: &Stmt| {
-        let StmtKind::If { branches, .. } = &stmt.kind else { return None };
-        let [(_, inner)] = branches.as_slice() else { return None };
-        let [only] = inner.as_slice() else { return None };
-        (only.span.end == stmt.span.end).then_some(only.span)
-    };
-    routine.statements().filter_map(only).collect()
 }
 
 /// The parts of a record or an array.

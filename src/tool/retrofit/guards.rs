@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::files::Source;
-use super::interrupts::written_by_interrupts;
+use super::interrupts::data_of_interrupts;
 use super::settings::{Form, Settings};
 use super::statements::calls;
 use crate::rapid::builtins::{Instruction, instruction, is_controller_specific, is_movement};
@@ -27,6 +27,8 @@ pub(super) struct Guards<'p> {
     arguments: BTreeMap<Span, (RoutineId, &'p Expr)>,
     /// Data that interrupt routines or other tasks may write at any time.
     meanwhile: BTreeSet<DataId>,
+    /// Data that interrupt routines may read at any time.
+    read_by_interrupts: BTreeSet<DataId>,
     /// Whether movements with inline targets may be replaced.
     inline_targets: bool,
     known: RefCell<BTreeMap<Span, Reads>>,
@@ -41,7 +43,7 @@ impl<'p> Guards<'p> {
         let elsewhere = &settings.written_elsewhere;
         let inline_targets = settings.inline_targets || settings.form == Form::Speeds;
         let mut arguments = BTreeMap::new();
-        let mut meanwhile = written_by_interrupts(program);
+        let [mut meanwhile, read_by_interrupts] = data_of_interrupts(program);
         for (m, module) in program.modules.iter().enumerate() {
             for (index, routine) in module.routines.iter().enumerate() {
                 let id = RoutineId { module: m, index };
@@ -66,7 +68,7 @@ impl<'p> Guards<'p> {
             }
         }
         let known = RefCell::default();
-        Guards { program, files, arguments, meanwhile, inline_targets, known }
+        Guards { program, files, arguments, meanwhile, read_by_interrupts, inline_targets, known }
     }
 
     /// Why no guard can ensure that a run moves as in the original.
@@ -88,6 +90,14 @@ impl<'p> Guards<'p> {
 
     pub(super) fn files(&self) -> &'p [Source] {
         self.files
+    }
+
+    /// Whether an interrupt routine or another task may read or write these data at any time.
+    /// Other tasks may read all `PERS` data that are global.
+    pub(super) fn is_seen_meanwhile(&self, id: DataId) -> bool {
+        let data = self.program.data(id);
+        let is_shared = data.kind == DataKind::Pers && data.scope == Scope::Global;
+        is_shared || self.meanwhile.contains(&id) || self.read_by_interrupts.contains(&id)
     }
 
     /// Whether the value of an expression in a routine is the same before and during a movement, and

@@ -20,9 +20,14 @@ pub(super) fn interrupt_hazard(program: &Program) -> Option<Reason> {
     })
 }
 
-/// Module data that connected interrupt routines may write.
-pub(super) fn written_by_interrupts(program: &Program) -> BTreeSet<DataId> {
-    traps(program).into_iter().flat_map(|(_, reach)| reach.written).collect()
+/// Module data that connected interrupt routines may write, and those that they may read.
+pub(super) fn data_of_interrupts(program: &Program) -> [BTreeSet<DataId>; 2] {
+    let [mut written, mut read] = [BTreeSet::new(), BTreeSet::new()];
+    for (_, mut reach) in traps(program) {
+        written.append(&mut reach.written);
+        read.append(&mut reach.read);
+    }
+    [written, read]
 }
 
 /// The connected interrupt routines by name, with everything that they run.
@@ -71,6 +76,8 @@ struct Reach {
     stores_path: bool,
     /// Module data that it may write: by assignment, or as an argument.
     written: BTreeSet<DataId>,
+    /// Module data that its expressions name.
+    read: BTreeSet<DataId>,
 }
 
 impl Reach {
@@ -115,8 +122,13 @@ impl Reach {
         }
     }
 
-    /// Adds the functions that an expression calls.
+    /// Adds the functions that an expression calls, and the data that it names.
     fn expr(&mut self, program: &Program, module: usize, expr: &Expr) {
+        if let ExprKind::Ref(name) = &expr.kind
+            && let Some(Symbol::Data(id)) = program.resolve(module, &name.key)
+        {
+            self.read.insert(id);
+        }
         if let ExprKind::Call(name, _) = &expr.kind {
             self.call(program, module, &name.text);
         }

@@ -8,7 +8,7 @@ use super::files::file_and_line;
 use super::guards::Guards;
 use crate::rapid::builtins::instruction;
 use crate::rapid::ir::graph::Step;
-use crate::rapid::ir::hir::{Arg, Callee, DataKind, Expr, ParamMode, Scope, Stmt, StmtKind};
+use crate::rapid::ir::hir::{Arg, Callee, Expr, ParamMode, Stmt, StmtKind};
 use crate::rapid::ir::program::{Program, RoutineId, Symbol};
 use crate::rapid::ir::upcoming::{Quiet, Unknown, Upcoming};
 use crate::rapid::text::Span;
@@ -31,6 +31,11 @@ pub(super) fn mark_pieces(
     let upcoming = Upcoming::new(program, entry);
     let place = |span: Span| file_and_line(guards.files(), span);
     for site in sites.iter_mut().filter(|site| site.pieces.len() > 1) {
+        if site.pieces.len() > MAX_PIECES {
+            let many = format!(", in {} pieces; {MAX_PIECES} are possible", site.pieces.len());
+            site.refuse(&Reason::Scattered(many));
+            continue;
+        }
         let stops = site.pieces.windows(2).map(|pair| {
             let after = upcoming.after(pair[0].last, &|id, step| between.quiet(id, step));
             match after {
@@ -43,6 +48,9 @@ pub(super) fn mark_pieces(
                     ", and {} decides by what may change while the robot moves",
                     place(span)
                 ))),
+                Err(Unknown::Handler) => {
+                    Err(Reason::Scattered(", from a handler that restores a state".to_owned()))
+                }
                 Err(Unknown::End(id)) => Err(Reason::Scattered(format!(
                     ", and not only a call may start {}",
                     program.routine(id).name.text
@@ -56,6 +64,9 @@ pub(super) fn mark_pieces(
     }
 }
 
+/// Maximum number of pieces: the procedures that make up for them call each other, and a controller
+/// has room for a limited number of nested calls. A careful assumption.
+const MAX_PIECES: usize = 50;
 /// Maximum number of statements that a reason names.
 const NAMED: usize = 2;
 
@@ -87,11 +98,8 @@ impl Between<'_, '_> {
                     Some(Symbol::Routine(_)) => true,
                     Some(_) => false,
                     None => instruction(&name.key).is_some_and(|it| {
-                        let writes = call.args.iter().filter_map(Arg::value);
-                        it.on_the_fly
-                            && !it.changes_motion
-                            && (!it.may_write()
-                                || writes.into_iter().all(|to| self.is_own(routine, to)))
+                        let counted = call.args.iter().find_map(Arg::positional);
+                        it.counts() && counted.is_some_and(|to| self.is_own(routine, to))
                     }),
                 },
             },
@@ -110,8 +118,7 @@ impl Between<'_, '_> {
         !may_raise && self.guards.is_steady(routine, expr)
     }
 
-    /// Whether no other task can see this data: persistent data of the task or of all tasks are seen
-    /// from outside.
+    /// Whether nothing that runs at the same time can see this data.
     fn is_own(&self, routine: RoutineId, target: &Expr) -> bool {
         let Some(name) = target.base() else { return true };
         let mut params = self.program.routine(routine).params.iter();
@@ -119,10 +126,7 @@ impl Between<'_, '_> {
             return param.mode == ParamMode::In;
         }
         match self.program.resolve(routine.module, &name.key) {
-            Some(Symbol::Data(id)) => {
-                let data = self.program.data(id);
-                data.kind != DataKind::Pers || data.scope == Scope::Local
-            }
+            Some(Symbol::Data(id)) => !self.guards.is_seen_meanwhile(id),
             _ => true,
         }
     }

@@ -11,7 +11,6 @@ use super::job::Original;
 use super::relocated_waits::RelocatedWait;
 use crate::rapid::text::{FileId, Span};
 use crate::retime::motion::timeline::{Event, What};
-use crate::retime::optimize::site::in_compact_ifs;
 use crate::tool::emit::{self, Stop};
 
 /// Emits the streams of the candidates and the relocated waits; other files stay unchanged.
@@ -73,7 +72,7 @@ fn stops(original: &Original<'_>, candidates: &[Candidate], sites: &[emit::Site]
         .flat_map(|(_, candidate)| original.sites[candidate.site].stops.iter().copied())
         .filter(|stop| !begins.contains(&(stop.file, stop.start)))
         .collect();
-    let compact = in_compact_ifs(original.program);
+    let compact = original.program.in_compact_ifs();
     let stop = |span: Span| Stop { span, is_compact: compact.contains(&span) };
     stops.into_iter().map(stop).collect()
 }

@@ -87,21 +87,12 @@ impl StateChangeCollector<'_> {
     fn block(&mut self, block: &Block) {
         for stmt in block {
             self.statement(stmt, None);
-            match &stmt.kind {
-                // A compact IF ends with its statement, the long form with ENDIF.
-                StmtKind::If { branches, otherwise: None }
-                    if branches.len() == 1
-                        && branches[0].1.last().is_some_and(|l| l.span.end == stmt.span.end) =>
-                {
-                    for inner in &branches[0].1 {
-                        self.statement(inner, Some(branches[0].0.span));
-                    }
-                }
-                other => {
-                    for inner in other.blocks() {
-                        self.block(inner);
-                    }
-                }
+            if let Some((condition, only)) = stmt.compact() {
+                self.statement(only, Some(condition.span));
+                continue;
+            }
+            for inner in stmt.kind.blocks() {
+                self.block(inner);
             }
         }
     }

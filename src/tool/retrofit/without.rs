@@ -12,9 +12,6 @@ use crate::tool::emit::EDIT_REMARKS;
 
 /// Text in the header of each module of streams.
 const HEAD: &[u8] = b"! Joint streams, written by joulepath";
-/// Length of the insertions that make a block of a compact IF.
-const THEN: &[u8] = b" THEN";
-const ENDIF: &[u8] = b" ENDIF";
 /// The declaration that follows the prefix.
 const COUNTERS: &[u8] = b"ByStream{";
 
@@ -62,8 +59,8 @@ impl StreamRemover<'_> {
                     ([(condition, body)], None) => self.compact(stmt, condition, body),
                     _ => {}
                 },
-                StmtKind::Assign { target, .. } if self.is_own(target) => self.note(stmt.span),
-                StmtKind::Call(call) if self.makes_up(&call.callee) => self.made_up_for(stmt.span),
+                _ if self.records(stmt) => self.note(stmt.span),
+                _ if self.makes_up(stmt) => self.made_up_for(stmt.span),
                 _ => {}
             }
             for inner in stmt.kind.blocks() {
@@ -83,9 +80,16 @@ impl StreamRemover<'_> {
         rest.is_some_and(|number| number.parse::<usize>().is_ok())
     }
 
-    /// Whether a call makes up for movements that were put off.
-    fn makes_up(&self, callee: &Callee) -> bool {
-        matches!(callee, Callee::Name(name) if name.key.strip_prefix(&self.prefix) == Some("back"))
+    /// Whether a statement records a load or setting.
+    fn records(&self, stmt: &Stmt) -> bool {
+        matches!(&stmt.kind, StmtKind::Assign { target, .. } if self.is_own(target))
+    }
+
+    /// Whether a statement makes up for movements that were put off.
+    fn makes_up(&self, stmt: &Stmt) -> bool {
+        let StmtKind::Call(call) = &stmt.kind else { return false };
+        let Callee::Name(name) = &call.callee else { return false };
+        name.key.strip_prefix(&self.prefix) == Some("back")
     }
 
     /// Deletes such a call, with the blanks up to the next statement.
@@ -134,27 +138,25 @@ impl StreamRemover<'_> {
 
     /// Restores a compact IF that became a block for an inserted statement.
     fn compact(&mut self, stmt: &Stmt, condition: &Expr, body: &Block) {
-        let is_back =
-            |stmt: &Stmt| matches!(&stmt.kind, StmtKind::Call(call) if self.makes_up(&call.callee));
-        let is_record = |stmt: &Stmt| matches!(&stmt.kind, StmtKind::Assign { target, .. } if self.is_own(target));
-        let (back, own) = match body.as_slice() {
-            [first, own @ ..] if is_back(first) => (Some(first), own),
-            own => (None, own),
-        };
-        let (then, last) = match (back, own) {
-            (_, [_, record]) if is_record(record) => {
-                (condition.span.end as usize..(condition.span.end as usize + THEN.len()), record)
+        let start = condition.span.end as usize;
+        let after_condition = start..start + b" THEN".len();
+        let (then, last) = match body.as_slice() {
+            // THEN is behind the condition.
+            [_, record] if self.records(record) => (after_condition, record),
+            [back, _, record] if self.makes_up(back) && self.records(record) => {
+                (after_condition, record)
             }
-            (Some(back), [last]) => {
-                (back.span.start as usize - THEN.len()..back.span.start as usize, last)
+            // THEN is before the inserted call.
+            [back, last] if self.makes_up(back) => {
+                let end = back.span.start as usize;
+                (end - b"THEN ".len()..end, last)
             }
             _ => return,
         };
         let (begin, end) = (last.span.end as usize, stmt.span.end as usize);
-        let has_then =
-            self.bytes.get(then.clone()).is_some_and(|text| text.trim_ascii() == THEN.trim_ascii());
+        let has_then = self.bytes.get(then.clone()).is_some_and(|it| it.trim_ascii() == b"THEN");
         let in_line = !self.bytes[then.start..end].iter().any(|b| matches!(b, b'\r' | b'\n'));
-        if has_then && in_line && self.bytes[begin..end] == *ENDIF {
+        if has_then && in_line && self.bytes[begin..end] == *b" ENDIF" {
             self.delete(stmt.span, then.start, then.end);
             self.delete(stmt.span, begin, end);
         }
