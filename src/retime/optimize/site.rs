@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::reason::Reason;
 use crate::rapid::builtins::{Instruction, MoveForm, instruction, is_movement};
 use crate::rapid::ir::hir::{Arg, ArgKind, Block, Callee, Expr, ExprKind, Stmt, StmtKind};
-use crate::rapid::ir::movement::{Argument, Movement, Settings};
+use crate::rapid::ir::movement::{Argument, Movement, Output, Settings};
 use crate::rapid::ir::program::Program;
 use crate::rapid::ir::value::Dependence;
 use crate::rapid::text::Span;
@@ -82,7 +82,7 @@ pub fn sites(program: &Program, simulation: &Simulation) -> Vec<Site> {
         let reason = eligibility(run, std::mem::take(&mut first))
             .err()
             .or_else(|| places.in_compact_if(run).then_some(Reason::CompactIf))
-            .or_else(|| sets_output_in_motion(simulation, index).then_some(Reason::EarlyOutput))
+            .or_else(|| output_in_motion(simulation, index, run.moves.len()))
             .or_else(|| joined.contains(&index).then_some(Reason::FliesOn))
             .or_else(|| places.ends_in_fly_by(run).then_some(Reason::FliesOn));
         let is_forward = head.file == tail.file && head.start <= tail.start;
@@ -147,15 +147,23 @@ impl Site {
     }
 }
 
-/// Whether an output is set during the movements of a run.
-fn sets_output_in_motion(simulation: &Simulation, run: usize) -> bool {
+/// Why an output that is set during the movements of a run prevents a stream. `count`: the number of
+/// movements.
+fn output_in_motion(simulation: &Simulation, run: usize, count: usize) -> Option<Reason> {
     let before = simulation.events[..run].iter().rev();
-    before
-        .map_while(|event| match &event.what {
-            What::Output(_, under_way) => Some(*under_way),
-            _ => None,
-        })
-        .any(|under_way| under_way > 0)
+    let outputs = before.map_while(|event| match &event.what {
+        What::Output(output, under_way) => Some((output, *under_way)),
+        _ => None,
+    });
+    let during: Vec<_> = outputs.filter(|(_, under_way)| *under_way > 0).collect();
+    // The output before the others comes last.
+    match during.iter().rev().find(|(_, under_way)| *under_way < count) {
+        Some((output, _)) => {
+            let Output { instruction, signal, .. } = output;
+            Some(Reason::LogicBetween(format!("{instruction} {signal} runs")))
+        }
+        None => (!during.is_empty()).then_some(Reason::EarlyOutput),
+    }
 }
 
 /// The last run and the first run of the repetition, if the last movement ends in a fly-by point
