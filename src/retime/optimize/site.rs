@@ -15,7 +15,7 @@ use crate::rapid::ir::value::Dependence;
 use crate::rapid::text::Span;
 use crate::retime::motion::Simulation;
 use crate::retime::motion::timed::TimedMotion;
-use crate::retime::motion::timeline::{Run, What};
+use crate::retime::motion::timeline::{MoveRecord, Run, What};
 use crate::retime::path::joint_path::{DOF, JointPath, Joints, PieceKind};
 
 /// A place of the program with its variants.
@@ -220,6 +220,10 @@ fn eligibility(run: &Run, first: bool) -> Result<(), Reason> {
     if run.moves.windows(2).any(|pair| pair[0].movement.tool != pair[1].movement.tool) {
         return Err(Reason::Setting("a change of tool".into()));
     }
+    let shares = |record: &MoveRecord| record.movement.settings.shares();
+    if run.moves.windows(2).any(|pair| shares(&pair[0]) != shares(&pair[1])) {
+        return Err(Reason::Setting("a change of VelSet or AccSet".into()));
+    }
     if !run.start_known {
         return Err(Reason::UnknownStart("a movement before it could not be worked out".into()));
     }
@@ -300,8 +304,6 @@ pub fn not_constant(movement: &Movement) -> Option<Reason> {
 fn settings_allow(settings: &Settings) -> Result<(), Reason> {
     let limits_path = settings.path_acceleration.iter().any(|limit| limit.is_finite());
     let in_force = [
-        (settings.speed_override != 1.0, "VelSet"),
-        (settings.acceleration != 1.0 || settings.ramp != 1.0, "AccSet"),
         (settings.fine_point_ramp != 1.0, "AccSet\\FinePointRamp"),
         (settings.refresh != 1.0, "SpeedRefresh"),
         (limits_path, "PathAccLim"),

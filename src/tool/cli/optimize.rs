@@ -23,8 +23,8 @@ use crate::tool::emit::Layout;
 use crate::tool::report::place::Places;
 use crate::tool::report::{self};
 use crate::tool::retrofit::{
-    Budget, CLOSEST_S, Form, Objective, Retrofit, SPACING_S, Settings, freed, is_streams, retrofit,
-    written_in,
+    Budget, CLOSEST_S, Form, Objective, Retrofit, SPACING_S, Settings, declared_in, freed,
+    is_streams, retrofit, written_in,
 };
 use crate::tool::suggest::Applied;
 
@@ -111,6 +111,11 @@ pub(super) struct OptimizeArgs {
     /// by `ModPos` afterwards, because no guard sees it.
     #[arg(long)]
     inline_targets: bool,
+
+    /// No task that is not given reads the PERS data of this program: a run may then go on behind a
+    /// statement that writes such data. A whole backup has all tasks.
+    #[arg(long)]
+    only_task: bool,
 
     /// Let joint movements leave their path, and lines and arcs whose statement has the comment
     /// `! joulepath: free` on its line.
@@ -345,6 +350,7 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
     if args.dwell_pose.is_some() && args.emit != EmitArg::Absj {
         bail!("--dwell-pose needs streams: leave out --emit, or give --emit absj");
     }
+    let has_all_tasks = args.only_task || whole_backup(&args.program.cell.paths, job).is_some();
     Ok(Settings {
         entry: job.entry.clone(),
         options: job.options.clone(),
@@ -385,6 +391,7 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
         dwell_pose: args.dwell_pose.map(dwell_pose).transpose()?,
         pareto: usize::from(args.pareto),
         written_elsewhere: written_in(job.others()),
+        read_elsewhere: has_all_tasks.then(|| declared_in(job.others())),
     })
 }
 

@@ -8,11 +8,13 @@ use super::job::Job;
 use super::recorded::recorded;
 use crate::arm::kinematics::fk;
 use crate::arm::robot::Model;
-use crate::rapid::ir::movement::{Argument, Movement};
+use crate::rapid::ir::movement::{self, Argument, Movement};
 use crate::rapid::ir::predefined;
 use crate::rapid::ir::value::Datum;
 use crate::rapid::text::{SourceFile, Span};
-use crate::tool::emit::{Emission, Names, Parameter, Robot};
+use crate::retime::motion::Simulation;
+use crate::retime::motion::timeline::What;
+use crate::tool::emit::{Emission, Names, Now, Parameter, Recorded, Robot};
 
 /// The constant input of all emissions.
 pub(super) struct EmissionContext<'a> {
@@ -22,6 +24,8 @@ pub(super) struct EmissionContext<'a> {
     /// The expressions that guards compare.
     pub(super) guards: &'a Guards<'a>,
     pub(super) emission: Emission,
+    /// The limits that guards compare.
+    limits: &'static [Limit],
 }
 
 impl<'a> EmissionContext<'a> {
@@ -30,17 +34,41 @@ impl<'a> EmissionContext<'a> {
         let files: Vec<SourceFile> =
             original.files.iter().map(|source| source.file.clone()).collect();
         let names = Names::free(&files);
+        let limits = compared_limits(&original.cycle.simulation);
         let emission = Emission {
             layout: settings.layout,
             robot: robot(model),
             override_percent: 100.0 * settings.options.speed_override.unwrap_or(1.0),
-            recorded: recorded(original.program, original.files, &names),
+            recorded: Recorded {
+                shares: !limits.is_empty(),
+                ..recorded(original.program, original.files, &names)
+            },
             program: hash(&files),
             names,
             files,
         };
         let beside = original.program.modules[original.entry.module].span.file.0 as usize;
-        EmissionContext { files: original.files, beside, guards, emission }
+        EmissionContext { files: original.files, beside, guards, emission, limits }
+    }
+}
+
+/// The limits of the program's movements that guards compare, if some differ from the usual ones.
+fn compared_limits(simulation: &Simulation) -> &'static [Limit] {
+    let runs = simulation.events.iter().filter_map(|event| match &event.what {
+        What::Run(run) => Some(run),
+        _ => None,
+    });
+    let moves = || runs.clone().flat_map(|run| &run.moves).map(|record| &record.movement);
+    let is_slower = |movement: &Movement| {
+        let Movement { speed, settings, .. } = movement;
+        speed.tcp * settings.speed_override > settings.speed_max
+    };
+    if moves().any(is_slower) {
+        &LIMITS
+    } else if moves().any(|movement| movement.settings.shares() != [1.0; 3]) {
+        &LIMITS[..3]
+    } else {
+        &[]
     }
 }
 
@@ -77,8 +105,18 @@ pub(super) fn place(files: &[Source], span: Span) -> String {
     format!("{} {lines}", ascii(&file.relative))
 }
 
-/// The parameters and values that a guard compares: arguments, and the load if the program changes
-/// it.
+/// A limit of `VelSet` or `AccSet`: its name in messages, how a guard reads it, and its value.
+type Limit = (&'static str, &'static str, fn(&movement::Settings) -> f64);
+
+const LIMITS: [Limit; 4] = [
+    ("VelSet", "C_MOTSET.vel.oride", |settings| settings.limits()[0]),
+    ("AccSet", "C_MOTSET.acc.acc", |settings| settings.limits()[2]),
+    ("AccSet ramp", "C_MOTSET.acc.ramp", |settings| settings.limits()[3]),
+    ("VelSet max", "C_MOTSET.vel.max", |settings| settings.limits()[1]),
+];
+
+/// The parameters and values that a guard compares: arguments, the load if the program changes
+/// it, and the limits of `VelSet` and `AccSet`.
 pub(super) fn compared(
     context: &EmissionContext<'_>,
     arguments: &[Argument],
@@ -89,13 +127,22 @@ pub(super) fn compared(
         let load = movement.settings.grip_load_data.clone();
         let load = load.or_else(|| predefined::lookup("load0").map(|value| value.datum));
         let parameter = Parameter {
-            text: None,
+            now: Now::Load,
             label: "GripLoad".to_owned(),
             type_name: "loaddata",
             is_computed: false,
         };
         compared.extend(load.map(|load| (parameter, load)));
     }
+    compared.extend(context.limits.iter().map(|(label, expression, value)| {
+        let parameter = Parameter {
+            now: Now::Anywhere(expression),
+            label: (*label).to_owned(),
+            type_name: "num",
+            is_computed: false,
+        };
+        (parameter, Datum::Num(value(&movement.settings)))
+    }));
     compared.into_iter().unzip()
 }
 

@@ -55,7 +55,7 @@ mod without;
 
 pub use brakes::BRAKE_NOTE;
 pub use cell::Cell;
-pub use elsewhere::written_in;
+pub use elsewhere::{declared_in, written_in};
 pub use error::RetrofitError;
 pub use figures::{Figures, LowerLimits, Retrofit, Segment, SegmentKind, Verification};
 pub(in crate::tool) use files::file_and_line;

@@ -78,6 +78,9 @@ pub struct Settings {
     pub pareto: usize,
     /// Lower-case names of `PERS` data that other tasks of the controller may write.
     pub written_elsewhere: BTreeSet<String>,
+    /// Lower-case names of `PERS` data that other tasks of the controller may read. `None`: not
+    /// known, so all that are global may be.
+    pub read_elsewhere: Option<BTreeSet<String>>,
 }
 
 /// Time spacing of the points that a controller plans, s.
@@ -104,6 +107,7 @@ impl Default for Settings {
             inline_targets: false,
             pareto: 0,
             written_elsewhere: BTreeSet::new(),
+            read_elsewhere: None,
         }
     }
 }
