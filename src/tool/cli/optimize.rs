@@ -18,7 +18,9 @@ use super::{backinfo, input, listing, output, streams, suggest, undo};
 use crate::rapid::text::charset;
 use crate::retime::optimize::cost::Cost;
 use crate::retime::optimize::freedom::{Bound, Freedom};
+use crate::retime::optimize::resting::IdleState;
 use crate::retime::optimize::retime::SLOWEST;
+use crate::tool::config::{Config, Idle};
 use crate::tool::emit::Layout;
 use crate::tool::report::place::Places;
 use crate::tool::report::{self};
@@ -68,8 +70,8 @@ pub(super) struct OptimizeArgs {
     #[arg(long, value_enum, default_value_t = EnergyArg::Electrical)]
     energy: EnergyArg,
 
-    /// Add the curve of least energy over time of each segment to the JSON and the report, with
-    /// so many points.
+    /// Add the curves of least energy over time of the cycle and of each segment to the JSON and the
+    /// report, with so many points.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=200), hide_default_value = true)]
     pareto: u16,
 
@@ -359,6 +361,7 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
             ObjectiveArg::Time => Objective::Time,
         },
         budget,
+        idle: idle_states(&job.config),
         spacing_s,
         closest_s: if asked.is_some() { spacing_s } else { CLOSEST_S },
         freedom: Freedom {
@@ -393,6 +396,17 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
         written_elsewhere: written_in(job.others()),
         read_elsewhere: has_all_tasks.then(|| declared_in(job.others())),
     })
+}
+
+/// The idle states of the configuration.
+fn idle_states(config: &Config) -> Vec<IdleState> {
+    let state = |(name, &Idle { power_w, wake_s, wake_j }): (&String, &Idle)| IdleState {
+        name: name.clone(),
+        power_w,
+        wake_s,
+        wake_j,
+    };
+    config.idle.iter().map(state).collect()
 }
 
 /// The bound of a speed that a flag may free.
