@@ -220,9 +220,11 @@ fn eligibility(run: &Run, first: bool) -> Result<(), Reason> {
     if run.moves.windows(2).any(|pair| pair[0].movement.tool != pair[1].movement.tool) {
         return Err(Reason::Setting("a change of tool".into()));
     }
-    let shares = |record: &MoveRecord| record.movement.settings.shares();
-    if run.moves.windows(2).any(|pair| shares(&pair[0]) != shares(&pair[1])) {
-        return Err(Reason::Setting("a change of VelSet or AccSet".into()));
+    let limits = |record: &MoveRecord| {
+        (record.movement.settings.limits(), record.movement.settings.axiswise_wrist())
+    };
+    if run.moves.windows(2).any(|pair| limits(&pair[0]) != limits(&pair[1])) {
+        return Err(Reason::Setting("a change of VelSet, AccSet or SingArea".into()));
     }
     if !run.start_known {
         return Err(Reason::UnknownStart("a movement before it could not be worked out".into()));
@@ -270,10 +272,10 @@ fn movement_is_eligible(movement: &Movement) -> Result<(), Reason> {
         return Err(Reason::Argument(name.to_string()));
     }
     let settings = &movement.settings;
+    let bends_line = !settings.axiswise_wrist()
+        && matches!(movement.form, MoveForm::Linear | MoveForm::Circular);
     match &settings.sing_area {
-        Some(option) if matches!(movement.form, MoveForm::Linear | MoveForm::Circular) => {
-            Err(Reason::Setting(option.to_string()))
-        }
+        Some(option) if bends_line => Err(Reason::Setting(option.to_string())),
         _ => settings_allow(settings),
     }
 }

@@ -150,6 +150,8 @@ pub struct Recorded {
     pub load: bool,
     /// Whether guards compare `VelSet` and `AccSet` with those of their streams instead of 100 %.
     pub shares: bool,
+    /// Whether guards compare `SingArea\Wrist` with that of their streams instead of `\Off`.
+    pub wrist: bool,
     /// Insertions after the statements.
     pub edits: Vec<Edit>,
 }

@@ -159,6 +159,7 @@ pub fn emit(emission: &Emission, sites: &[Site], stops: &[Stop]) -> Result<Emitt
     context.insert("switches", &recorded.switches);
     context.insert("load", &recorded.load);
     context.insert("shares", &recorded.shares);
+    context.insert("wrist", &recorded.wrist);
     context.insert("count", &sites.len());
     context.insert("puts_off", &puts_off);
     let list = |text: &dyn Fn(&SiteText) -> String| texts.iter().map(text).collect::<Vec<_>>();

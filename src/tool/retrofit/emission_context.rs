@@ -24,8 +24,8 @@ pub(super) struct EmissionContext<'a> {
     /// The expressions that guards compare.
     pub(super) guards: &'a Guards<'a>,
     pub(super) emission: Emission,
-    /// The limits that guards compare.
-    limits: &'static [Limit],
+    /// The settings that guards compare.
+    compared: Vec<Compared>,
 }
 
 impl<'a> EmissionContext<'a> {
@@ -34,13 +34,15 @@ impl<'a> EmissionContext<'a> {
         let files: Vec<SourceFile> =
             original.files.iter().map(|source| source.file.clone()).collect();
         let names = Names::free(&files);
-        let limits = compared_limits(&original.cycle.simulation);
+        let compared = compared_settings(&original.cycle.simulation);
+        let compares = |kind: &Compared| compared.contains(kind);
         let emission = Emission {
             layout: settings.layout,
             robot: robot(model),
             override_percent: 100.0 * settings.options.speed_override.unwrap_or(1.0),
             recorded: Recorded {
-                shares: !limits.is_empty(),
+                shares: compares(&Compared::Override),
+                wrist: compares(&Compared::Wrist),
                 ..recorded(original.program, original.files, &names)
             },
             program: hash(&files),
@@ -48,28 +50,29 @@ impl<'a> EmissionContext<'a> {
             files,
         };
         let beside = original.program.modules[original.entry.module].span.file.0 as usize;
-        EmissionContext { files: original.files, beside, guards, emission, limits }
+        EmissionContext { files: original.files, beside, guards, emission, compared }
     }
 }
 
-/// The limits of the program's movements that guards compare, if some differ from the usual ones.
-fn compared_limits(simulation: &Simulation) -> &'static [Limit] {
+/// The settings of the program's movements that guards compare, because some are not the usual ones.
+fn compared_settings(simulation: &Simulation) -> Vec<Compared> {
     let runs = simulation.events.iter().filter_map(|event| match &event.what {
         What::Run(run) => Some(run),
         _ => None,
     });
-    let moves = || runs.clone().flat_map(|run| &run.moves).map(|record| &record.movement);
-    let is_slower = |movement: &Movement| {
-        let Movement { speed, settings, .. } = movement;
-        speed.tcp * settings.speed_override > settings.speed_max
-    };
-    if moves().any(is_slower) {
-        &LIMITS
-    } else if moves().any(|movement| movement.settings.shares() != [1.0; 3]) {
-        &LIMITS[..3]
-    } else {
-        &[]
+    let moves = runs.flat_map(|run| &run.moves).map(|record| &record.movement);
+    let (mut is_scaled, mut is_capped, mut wrist) = (false, false, false);
+    for Movement { speed, settings, .. } in moves {
+        is_scaled |= settings.shares() != [1.0; 3];
+        is_capped |= speed.tcp * settings.speed_override > settings.speed_max;
+        wrist |= settings.axiswise_wrist();
     }
+    let shares = [Compared::Override, Compared::Acceleration, Compared::Ramp];
+    let mut compared = Vec::new();
+    compared.extend(shares.into_iter().filter(|_| is_scaled));
+    compared.extend(is_capped.then_some(Compared::MaxSpeed));
+    compared.extend(wrist.then_some(Compared::Wrist));
+    compared
 }
 
 /// A hash that identifies a version of the program.
@@ -105,18 +108,44 @@ pub(super) fn place(files: &[Source], span: Span) -> String {
     format!("{} {lines}", ascii(&file.relative))
 }
 
-/// A limit of `VelSet` or `AccSet`: its name in messages, how a guard reads it, and its value.
-type Limit = (&'static str, &'static str, fn(&movement::Settings) -> f64);
+/// A setting that a guard compares with that of its streams.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Compared {
+    Override,
+    MaxSpeed,
+    Acceleration,
+    Ramp,
+    Wrist,
+}
 
-const LIMITS: [Limit; 4] = [
-    ("VelSet", "C_MOTSET.vel.oride", |settings| settings.limits()[0]),
-    ("AccSet", "C_MOTSET.acc.acc", |settings| settings.limits()[2]),
-    ("AccSet ramp", "C_MOTSET.acc.ramp", |settings| settings.limits()[3]),
-    ("VelSet max", "C_MOTSET.vel.max", |settings| settings.limits()[1]),
-];
+impl Compared {
+    /// The name in messages, and how a guard reads the setting.
+    fn parameter(self) -> Parameter {
+        let (label, expression, type_name) = match self {
+            Compared::Override => ("VelSet", "C_MOTSET.vel.oride", "num"),
+            Compared::MaxSpeed => ("VelSet max", "C_MOTSET.vel.max", "num"),
+            Compared::Acceleration => ("AccSet", "C_MOTSET.acc.acc", "num"),
+            Compared::Ramp => ("AccSet ramp", "C_MOTSET.acc.ramp", "num"),
+            Compared::Wrist => ("SingArea Wrist", "C_MOTSET.sing.wrist", "bool"),
+        };
+        let now = Now::Anywhere(expression);
+        Parameter { now, label: label.to_owned(), type_name, is_computed: false }
+    }
+
+    fn value(self, settings: &movement::Settings) -> Datum {
+        let [speed, max, acceleration, ramp] = settings.limits().map(Datum::Num);
+        match self {
+            Compared::Override => speed,
+            Compared::MaxSpeed => max,
+            Compared::Acceleration => acceleration,
+            Compared::Ramp => ramp,
+            Compared::Wrist => Datum::Bool(settings.axiswise_wrist()),
+        }
+    }
+}
 
 /// The parameters and values that a guard compares: arguments, the load if the program changes
-/// it, and the limits of `VelSet` and `AccSet`.
+/// it, and settings that are not the usual ones.
 pub(super) fn compared(
     context: &EmissionContext<'_>,
     arguments: &[Argument],
@@ -134,15 +163,8 @@ pub(super) fn compared(
         };
         compared.extend(load.map(|load| (parameter, load)));
     }
-    compared.extend(context.limits.iter().map(|(label, expression, value)| {
-        let parameter = Parameter {
-            now: Now::Anywhere(expression),
-            label: (*label).to_owned(),
-            type_name: "num",
-            is_computed: false,
-        };
-        (parameter, Datum::Num(value(&movement.settings)))
-    }));
+    let settings = context.compared.iter();
+    compared.extend(settings.map(|it| (it.parameter(), it.value(&movement.settings))));
     compared.into_iter().unzip()
 }
 

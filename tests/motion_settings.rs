@@ -1,4 +1,4 @@
-//! Streams under `AccSet` and `VelSet`: within the lowered limits, and only under that setting.
+//! Streams under `AccSet`, `VelSet` and `SingArea`: within the lowered limits, and only under that setting.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -110,4 +110,32 @@ fn streams_need_the_setting_that_they_were_made_for() {
             assert_eq!(streams(&emitted(&result, setting, other)), [false, false, true], "{other}");
         }
     }
+}
+
+/// A line whose tool turns with the wrist axes.
+#[test]
+fn streams_need_the_interpolation_that_they_were_made_for() {
+    let files = program(
+        "MODULE M
+PERS tooldata tG:=[TRUE,[[118.4,0,151.7],[0.707106781,0,0.707106781,0]],[5.5,[40,0,90],[1,0,0,0],0.05,0.06,0.04]];
+CONST jointtarget jRest:=[[0,-25,10,0,15,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+CONST robtarget pA:=[[710,-230,470],[0,0,1,0],[-1,-1,0,1],[9E9,9E9,9E9,9E9,9E9,9E9]];
+PROC main()
+MoveAbsJ jRest,v1000,fine,tG;
+SingArea\\Wrist;
+MoveJ pA,v1000,fine,tG;
+MoveL RelTool(Offs(pA,100,300,60),0,0,0\\Rx:=20),v800,fine,tG;
+SingArea\\Off;
+MoveAbsJ jRest,v1000,fine,tG;
+ENDPROC
+ENDMODULE
+"
+        .to_owned(),
+    );
+    let settings = Settings { point_estimate: true, ..Settings::default() };
+    let result = retrofit(&files, &irb1600(), &settings, &|_, _| ()).unwrap();
+    assert!(result.verification.passed);
+    assert_eq!(streams(&result.after.0), [false, true, true, true]);
+    let other = emitted(&result, "SingArea\\Wrist;", "SingArea\\Off;");
+    assert_eq!(streams(&other), [false, false, false, true]);
 }
