@@ -102,7 +102,7 @@ fn streams_need_the_setting_that_they_were_made_for() {
     for (setting, others) in [
         ("AccSet 60,70;", ["AccSet 70,70;", "AccSet 60,100;", "AccSet 50,70;"]),
         ("VelSet 40,5000;", ["VelSet 50,5000;", "VelSet 30,5000;", "VelSet 40,50;"]),
-        ("VelSet 100,300;", ["VelSet 100,400;", "VelSet 100,200;", "VelSet 100,5000;"]),
+        ("VelSet 100,800;", ["VelSet 100,900;", "VelSet 100,700;", "VelSet 100,5000;"]),
     ] {
         let result = retrofitted(setting);
         assert_eq!(streams(&result.after.0), [false, true, true], "{setting}");
@@ -124,7 +124,7 @@ PROC main()
 MoveAbsJ jRest,v1000,fine,tG;
 SingArea\\Wrist;
 MoveJ pA,v1000,fine,tG;
-MoveL RelTool(Offs(pA,100,300,60),0,0,0\\Rx:=20),v800,fine,tG;
+MoveL RelTool(Offs(pA,100,150,60),0,0,0\\Rx:=20),v800,fine,tG;
 SingArea\\Off;
 MoveAbsJ jRest,v1000,fine,tG;
 ENDPROC
