@@ -122,6 +122,7 @@ CONST jointtarget jRest:=[[0,-25,10,0,15,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
 CONST robtarget pA:=[[710,-230,470],[0,0,1,0],[-1,-1,0,1],[9E9,9E9,9E9,9E9,9E9,9E9]];
 PROC main()
 MoveAbsJ jRest,v1000,fine,tG;
+ConfL\\Off;
 SingArea\\Wrist;
 MoveJ pA,v1000,fine,tG;
 MoveL RelTool(Offs(pA,100,150,60),0,0,0\\Rx:=20),v800,fine,tG;

@@ -50,14 +50,14 @@ pub fn plan(
     // excess comes from the average over a place where the TCP turns back.
     let mut tightened = caps.to_vec();
     let mut before = tightened.clone();
-    let mut last = vec![f64::INFINITY; caps.len()];
+    let mut hoped = vec![f64::INFINITY; caps.len()];
     let mut lowers = vec![true; caps.len()];
     for _ in 0..TIGHTENINGS {
         let worst = tcp_limits::worst(loaded.model, path, caps, &planned.0);
         let legs: Vec<usize> = path.legs().collect();
         let mut undone = false;
         for (i, leg) in legs.iter().enumerate() {
-            if worst[i] > LOWERED * last[i] && lowers[i] {
+            if worst[i] > hoped[i] && lowers[i] {
                 lowers[i] = false;
                 tightened[*leg] = before[*leg];
                 undone = true;
@@ -79,18 +79,14 @@ pub fn plan(
             let cap = &mut tightened[*leg];
             cap.path_acceleration = cap.path_acceleration.map(|x| x * factor);
             cap.world_acceleration *= factor;
+            // At least half of what was asked, on a logarithmic scale.
+            hoped[i] = excess(i).map_or(f64::INFINITY, |own| own * factor.sqrt());
         }
-        last = worst
-            .iter()
-            .map(|x| if *x > 1.0 + TCP_TOLERANCE { *x } else { f64::INFINITY })
-            .collect();
         planned = task.plan(&tightened)?;
     }
     Ok(planned)
 }
 
-/// Share of the excess that is left at most, if a tighter limit lowers it.
-const LOWERED: f64 = 0.995;
 /// Largest number of rounds that tighten the limits on the TCP acceleration.
 const TIGHTENINGS: usize = 6;
 /// Additional tightening per round, so that few rounds suffice.

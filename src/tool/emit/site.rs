@@ -148,10 +148,9 @@ pub struct Recorded {
     pub switches: Vec<&'static str>,
     /// Whether the load is recorded.
     pub load: bool,
-    /// Whether guards compare `VelSet` and `AccSet` with those of their streams instead of 100 %.
-    pub shares: bool,
-    /// Whether guards compare `SingArea\Wrist` with that of their streams instead of `\Off`.
-    pub wrist: bool,
+    /// Motion settings that guards compare with those of their streams instead of the usual ones, by
+    /// name.
+    pub compared: Vec<&'static str>,
     /// Insertions after the statements.
     pub edits: Vec<Edit>,
 }

@@ -158,8 +158,7 @@ pub fn emit(emission: &Emission, sites: &[Site], stops: &[Stop]) -> Result<Emitt
     context.insert("external", &sites.iter().any(Site::has_external));
     context.insert("switches", &recorded.switches);
     context.insert("load", &recorded.load);
-    context.insert("shares", &recorded.shares);
-    context.insert("wrist", &recorded.wrist);
+    context.insert("compared", &recorded.compared);
     context.insert("count", &sites.len());
     context.insert("puts_off", &puts_off);
     let list = |text: &dyn Fn(&SiteText) -> String| texts.iter().map(text).collect::<Vec<_>>();

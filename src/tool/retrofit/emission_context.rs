@@ -35,14 +35,12 @@ impl<'a> EmissionContext<'a> {
             original.files.iter().map(|source| source.file.clone()).collect();
         let names = Names::free(&files);
         let compared = compared_settings(&original.cycle.simulation);
-        let compares = |kind: &Compared| compared.contains(kind);
         let emission = Emission {
             layout: settings.layout,
             robot: robot(model),
             override_percent: 100.0 * settings.options.speed_override.unwrap_or(1.0),
             recorded: Recorded {
-                shares: compares(&Compared::Override),
-                wrist: compares(&Compared::Wrist),
+                compared: compared.iter().map(|setting| setting.label()).collect(),
                 ..recorded(original.program, original.files, &names)
             },
             program: hash(&files),
@@ -119,17 +117,28 @@ enum Compared {
 }
 
 impl Compared {
-    /// The name in messages, and how a guard reads the setting.
+    /// The name in messages.
+    fn label(self) -> &'static str {
+        match self {
+            Compared::Override => "VelSet",
+            Compared::MaxSpeed => "VelSet max",
+            Compared::Acceleration => "AccSet",
+            Compared::Ramp => "AccSet ramp",
+            Compared::Wrist => "SingArea Wrist",
+        }
+    }
+
+    /// How a guard reads the setting.
     fn parameter(self) -> Parameter {
-        let (label, expression, type_name) = match self {
-            Compared::Override => ("VelSet", "C_MOTSET.vel.oride", "num"),
-            Compared::MaxSpeed => ("VelSet max", "C_MOTSET.vel.max", "num"),
-            Compared::Acceleration => ("AccSet", "C_MOTSET.acc.acc", "num"),
-            Compared::Ramp => ("AccSet ramp", "C_MOTSET.acc.ramp", "num"),
-            Compared::Wrist => ("SingArea Wrist", "C_MOTSET.sing.wrist", "bool"),
+        let (expression, type_name) = match self {
+            Compared::Override => ("C_MOTSET.vel.oride", "num"),
+            Compared::MaxSpeed => ("C_MOTSET.vel.max", "num"),
+            Compared::Acceleration => ("C_MOTSET.acc.acc", "num"),
+            Compared::Ramp => ("C_MOTSET.acc.ramp", "num"),
+            Compared::Wrist => ("C_MOTSET.sing.wrist", "bool"),
         };
-        let now = Now::Anywhere(expression);
-        Parameter { now, label: label.to_owned(), type_name, is_computed: false }
+        let (now, label) = (Now::Anywhere(expression), self.label().to_owned());
+        Parameter { now, label, type_name, is_computed: false }
     }
 
     fn value(self, settings: &movement::Settings) -> Datum {
