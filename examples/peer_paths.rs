@@ -6,6 +6,8 @@
 #[expect(dead_code, reason = "the tests use more of it")]
 #[path = "../tests/hard_paths/cases.rs"]
 mod cases;
+#[path = "peer_paths/nodes.rs"]
+mod nodes;
 #[path = "../tests/support/mod.rs"]
 mod support;
 
@@ -149,6 +151,8 @@ fn path(case: &Case) -> Value {
             "time_optimal_s": seconds,
             "duration_s": fastest.duration(),
             "energy_s": energy_s,
+            "stages_s": nodes::stages(case, || nodes(n), &limits, &caps),
+            "nodes": nodes::nodes(case, &grid, &limits),
         }));
     }
     json!({ "name": case.name, "sizes": sizes, "free": free_stream(case, &limits, &caps) })

@@ -313,9 +313,10 @@ pub mod retrofit {
     pub use crate::retime::optimize::cost::Cost;
     pub use crate::retime::optimize::freedom::{Bound, Freedom};
     pub use crate::retime::optimize::reason::Reason;
+    pub use crate::retime::optimize::resting::IdleState;
     pub use crate::tool::emit::{EmitError, Layout};
     pub use crate::tool::retrofit::{
         Budget, Figures, Objective, OutputFile, OutputKind, Retrofit, RetrofitError, Segment,
-        SegmentKind, Settings, Source, Verification, retrofit,
+        SegmentKind, Settings, Source, TaktBasis, TaktEnergy, Verification, WholeCycle, retrofit,
     };
 }

@@ -14,7 +14,7 @@ use rust_source::tokens::tokens;
 const MIN_TERMS: usize = 40;
 
 /// Pages for users and contributors.
-const PAGES: [&str; 17] = [
+const PAGES: [&str; 18] = [
     "README.md",
     "CONTRIBUTING.md",
     "docs/architecture.md",
@@ -27,6 +27,7 @@ const PAGES: [&str; 17] = [
     "docs/identification.md",
     "docs/lints.md",
     "docs/placement.md",
+    "docs/reach.md",
     "docs/reasons.md",
     "docs/robots.md",
     "docs/trajectories.md",

@@ -138,9 +138,6 @@ fn movements_are_kept_where_interrupts_affect_the_motion() {
 #[test]
 fn movements_under_special_settings_are_kept() {
     let cases = [
-        ("VelSet 50,5000;", "VelSet 100,5000;"),
-        ("AccSet 50,100;", "AccSet 100,100;"),
-        ("AccSet 100,50;", "AccSet 100,100;"),
         ("PDispSet [[0,0,10],[1,0,0,0]];", "PDispOff;"),
         ("EOffsSet [10,0,0,0,0,0];", "EOffsOff;"),
         ("SoftAct 1,50;", "SoftDeact;"),

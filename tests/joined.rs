@@ -5,7 +5,7 @@
 
 mod support;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use joulepath::rapid::text::{FileId, SourceFile};
 use joulepath::retime::motion::timed::TimedMotion;
@@ -18,7 +18,12 @@ use support::{irb1600, module_paths, program, read, simulated, sources};
 const SAME: f64 = 1e-6;
 
 fn retrofitted(files: &[Source]) -> Retrofit {
-    let settings = Settings { point_estimate: true, ..Settings::default() };
+    retrofitted_with(files, None)
+}
+
+/// `read_elsewhere`: the data that other tasks may read, if known.
+fn retrofitted_with(files: &[Source], read_elsewhere: Option<BTreeSet<String>>) -> Retrofit {
+    let settings = Settings { point_estimate: true, read_elsewhere, ..Settings::default() };
     let result = retrofit(files, &irb1600(), &settings, &|_, _| ()).unwrap();
     assert!(result.verification.passed);
     result
@@ -118,6 +123,14 @@ LOCAL PERS num nLocal:=0;
 
 /// The reason of the run from `jA` over `jB` to `jC`, with statements behind `jB`.
 fn reason(between: &str, rest: &str) -> Option<String> {
+    reason_with(between, rest, None)
+}
+
+fn reason_with(
+    between: &str,
+    rest: &str,
+    read_elsewhere: Option<BTreeSet<String>>,
+) -> Option<String> {
     let text = format!(
         "{HEAD}PROC main()
 MoveAbsJ jA,v1000,fine,tool0;
@@ -136,7 +149,7 @@ ENDPROC
 ENDMODULE
 "
     );
-    let result = retrofitted(&program(text));
+    let result = retrofitted_with(&program(text), read_elsewhere);
     let joined = joined(&result);
     let [segment] = joined.as_slice() else { return Some("no such run".to_owned()) };
     segment.reason.as_ref().map(ToString::to_string)
@@ -170,14 +183,29 @@ fn what_prevents_a_stream_is_named() {
         ("MotionSup\\Off;", "", "logic-between: M.mod:12 runs between"),
         ("ConfL\\Off;", "", "logic-between: M.mod:12 runs between"),
         ("GripLoad load0;", "", "logic-between: M.mod:12 runs between"),
-        ("nShared:=3;", "", "logic-between: M.mod:12 runs between"),
-        ("Incr nShared;", "", "logic-between: M.mod:12 runs between"),
+        ("nShared:=3;", "", "logic-between: M.mod:12 (writes nShared; --only-task: "),
         ("n:=1;", trap, "logic-between: M.mod:12 runs between"),
         ("IF diA=1 n:=3;", "", "M.mod:12 decides by what may change"),
     ] {
         let reason = reason(between, rest).unwrap_or_default();
         assert!(reason.contains(words), "{between}: {reason}");
     }
+}
+
+/// Whether another task may read the data decides if they may be written early.
+#[test]
+fn data_that_no_other_task_reads_may_be_written_between() {
+    let read = |names: &[&str]| Some(names.iter().map(|name| (*name).to_owned()).collect());
+    for between in ["nShared:=3;", "Incr nShared;"] {
+        assert_eq!(reason_with(between, "", read(&[])), None, "{between}");
+        assert_eq!(reason_with(between, "", read(&["nother"])), None, "{between}");
+        let reason = reason_with(between, "", read(&["nshared"])).unwrap_or_default();
+        assert!(reason.contains("M.mod:12 (writes nShared; --only-task"), "{reason}");
+    }
+    let trap = "TRAP tStep\nIF nShared=1 SetDO doA,1;\nENDTRAP
+        PROC rConnect()\nCONNECT nTrap WITH tStep;\nENDPROC";
+    let reason = reason_with("nShared:=3;", trap, read(&[])).unwrap_or_default();
+    assert!(reason.contains("M.mod:12 runs between"), "{reason}");
 }
 
 /// The message runs in the simulated cycle, but need not: the stream would never run.

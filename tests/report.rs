@@ -17,7 +17,7 @@ use joulepath::retime::optimize::reason::Reason;
 use joulepath::tool::report::html::optimize_report;
 use joulepath::tool::retrofit::{
     Figures, OutputFile, OutputKind, Retrofit, Segment, SegmentKind, Settings, SignalKind,
-    SignalShift, Source, Verification, retrofit,
+    SignalShift, Source, Verification, WholeCycle, retrofit,
 };
 use support::{irb1600, modules, program, simulated, sources};
 
@@ -161,6 +161,7 @@ fn small(path: &str) -> Small {
         original: figures(&before),
         optimized: figures(&after),
         padding: None,
+        whole_cycle: WholeCycle::default(),
         potential_j: 25.0,
         notes: Vec::new(),
         segments,

@@ -113,6 +113,9 @@ pub struct WorkObject {
     pub fixed: bool,
 }
 
+/// The maximum TCP speed of a controller until `VelSet` sets another, mm/s.
+const USUAL_MAX_SPEED: f64 = 5000.0;
+
 /// Motion settings in force until changed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
@@ -153,6 +156,19 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// The `VelSet` override and `AccSet` acceleration and ramp, 1 = 100 %.
+    pub fn shares(&self) -> [f64; 3] {
+        [self.speed_override, self.acceleration, self.ramp]
+    }
+
+    /// As `C_MOTSET` has them: the `VelSet` override in % and its maximum speed in mm/s, `AccSet`
+    /// acceleration and ramp in %.
+    pub fn limits(&self) -> [f64; 4] {
+        let max = if self.speed_max.is_finite() { 1e3 * self.speed_max } else { USUAL_MAX_SPEED };
+        let [speed, acceleration, ramp] = self.shares().map(|share| 100.0 * share);
+        [speed, max, acceleration, ramp].map(|value| (value * 1e6).round() / 1e6)
+    }
+
     /// True for `SingArea\Wrist`: on lines and arcs the wrist axes are interpolated one by one.
     pub fn axiswise_wrist(&self) -> bool {
         self.sing_area.as_ref().is_some_and(|area| area.to_lowercase().ends_with("\\wrist"))

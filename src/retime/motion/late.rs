@@ -25,9 +25,10 @@ const FAR: f64 = 10.0;
 /// Share of the time that a displacement takes at the limits.
 const LEAST_SHARE: f64 = 0.2;
 
-/// The stream as the robot executes it; unchanged if it keeps all limits.
-pub(super) fn within_limits(loaded: Loaded<'_>, stream: Stream) -> Stream {
-    let limits = Limits::new(loaded.model);
+/// The stream as the robot executes it; unchanged if it keeps all limits. `acceleration`: the share
+/// of the accelerations that `AccSet` allows.
+pub(super) fn within_limits(loaded: Loaded<'_>, stream: Stream, acceleration: f64) -> Stream {
+    let limits = Limits::new(loaded.model, acceleration);
     let mut data = Data::new();
     let mut late = limits.within_reach(stream);
     let longest = SLOWEST * late.duration();
@@ -56,10 +57,11 @@ struct Limits {
 }
 
 impl Limits {
-    fn new(model: &Model) -> Limits {
+    fn new(model: &Model, acceleration: f64) -> Limits {
+        let most = joint_limits(model.limits.acceleration.as_ref());
         Limits {
             velocity: joint_limits(model.limits.velocity.as_ref()),
-            acceleration: joint_limits(model.limits.acceleration.as_ref()),
+            acceleration: most.map(|most| acceleration * most),
             torque: joint_limits(model.torque_bounds()),
         }
     }
@@ -142,14 +144,17 @@ mod tests {
         let load = Load::none();
         let loaded = Loaded { model: &model, load: &load };
         for interval in [1e-2, 1e-3, 1e-4, 1e-6] {
-            assert!(keeps_limits(&within_limits(loaded, stream(interval)), &model), "{interval}");
+            assert!(
+                keeps_limits(&within_limits(loaded, stream(interval), 1.0), &model),
+                "{interval}"
+            );
             // Points that can be reached in time keep theirs.
             let point =
                 |i: usize| std::array::from_fn(|j| if j == 0 { 0.09 * i as f64 } else { 0.3 });
             let mut times = vec![1.0; 7];
             times[2..5].fill(interval);
             let hasty = Stream::new(point(0), (1..=7).map(point).collect(), times).unwrap();
-            let late = within_limits(loaded, hasty);
+            let late = within_limits(loaded, hasty, 1.0);
             assert!(keeps_limits(&late, &model), "{interval}");
             assert!(late.duration() < 4.6, "{interval}: {}", late.duration());
             assert!((late.intervals()[0] - 1.0).abs() < 1e-9, "{:?}", late.intervals());
@@ -162,17 +167,19 @@ mod tests {
         let load = Load::none();
         let loaded = Loaded { model: &model, load: &load };
         let calm = stream(0.08);
-        assert_eq!(within_limits(loaded, calm.clone()), calm);
+        assert_eq!(within_limits(loaded, calm.clone(), 1.0), calm);
         let hasty = stream(0.03);
         let most = model.limits.acceleration.as_ref().unwrap()[0];
         let ratio = (hasty.max_acceleration()[0] / most).sqrt();
         assert!(ratio > 1.0, "{ratio}");
-        let late = within_limits(loaded, hasty.clone());
+        let late = within_limits(loaded, hasty.clone(), 1.0);
         assert!(late.max_acceleration()[0] <= (1.0 + 2.0 * ROUNDING) * most);
         // Uniform slowing takes the factor `ratio`.
         assert!(late.duration() > hasty.duration());
         assert!(late.duration() < ratio.max(1.0) * hasty.duration() * 1.05, "{}", late.duration());
         let middle = |stream: &Stream| stream.intervals()[10] / stream.intervals()[0];
         assert!(middle(&late) < 1.0, "{:?}", late.intervals());
+        let gentle = within_limits(loaded, hasty, 0.5);
+        assert!(gentle.max_acceleration()[0] <= 0.5 * (1.0 + 2.0 * ROUNDING) * most);
     }
 }

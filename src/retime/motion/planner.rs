@@ -46,21 +46,41 @@ pub fn plan(
     if !tcp_limits::limited(&caps[path.legs()]) {
         return Ok(planned);
     }
+    // A leg whose excess a tighter limit does not lower keeps the limit of the round before: the
+    // excess comes from the average over a place where the TCP turns back.
     let mut tightened = caps.to_vec();
+    let mut before = tightened.clone();
+    let mut hoped = vec![f64::INFINITY; caps.len()];
+    let mut lowers = vec![true; caps.len()];
     for _ in 0..TIGHTENINGS {
         let worst = tcp_limits::worst(loaded.model, path, caps, &planned.0);
-        let excess = |leg: usize| worst.get(leg).copied().filter(|x| *x > 1.0 + TCP_TOLERANCE);
-        if (0..worst.len()).all(|leg| excess(leg).is_none()) {
+        let legs: Vec<usize> = path.legs().collect();
+        let mut undone = false;
+        for (i, leg) in legs.iter().enumerate() {
+            if worst[i] > hoped[i] && lowers[i] {
+                lowers[i] = false;
+                tightened[*leg] = before[*leg];
+                undone = true;
+            }
+        }
+        let excess = |i: usize| {
+            let excess = worst.get(i).copied().filter(|x| *x > 1.0 + TCP_TOLERANCE);
+            excess.filter(|_| lowers[i])
+        };
+        if (0..worst.len()).all(|i| excess(i).is_none()) && !undone {
             break;
         }
-        for (i, leg) in path.legs().enumerate() {
+        before.clone_from(&tightened);
+        for (i, leg) in legs.iter().enumerate().filter(|(i, _)| lowers[*i]) {
             // Both legs of a corner affect its acceleration.
             let around = [i.checked_sub(1), Some(i), Some(i + 1)].into_iter().flatten();
             let Some(worst) = around.filter_map(excess).max_by(f64::total_cmp) else { continue };
             let factor = (1.0 - TIGHTER) / worst;
-            let cap = &mut tightened[leg];
+            let cap = &mut tightened[*leg];
             cap.path_acceleration = cap.path_acceleration.map(|x| x * factor);
             cap.world_acceleration *= factor;
+            // At least half of what was asked, on a logarithmic scale.
+            hoped[i] = excess(i).map_or(f64::INFINITY, |own| own * factor.sqrt());
         }
         planned = task.plan(&tightened)?;
     }

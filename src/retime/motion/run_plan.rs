@@ -55,7 +55,7 @@ impl RunDraft {
         let loaded = Loaded { model, load: &self.load };
         let planning = Planning::new(model, &self.settings);
         match self.as_stream() {
-            Some(stream) => realise(loaded, stream, planning),
+            Some(stream) => realise(loaded, stream, planning, self.settings.acceleration),
             None => self.plan_paths(loaded, planning),
         }
     }
@@ -138,10 +138,10 @@ impl RunDraft {
     }
 }
 
-fn realise(loaded: Loaded<'_>, stream: Stream, planning: Planning) -> Planned {
+fn realise(loaded: Loaded<'_>, stream: Stream, planning: Planning, acceleration: f64) -> Planned {
     // Points that cannot be reached in time are reached late.
     let asked = stream.duration();
-    let stream = within_limits(loaded, stream);
+    let stream = within_limits(loaded, stream, acceleration);
     let pace = if stream.duration() > asked { Pace::Acceleration } else { Pace::Time };
     // The time of a point ends in the middle of its corner.
     let times = stream.knots().times();

@@ -302,6 +302,9 @@ fn point(
     point
 }
 
+/// TCP speed over path speed below which the TCP turns back.
+const TURNS_BACK: f64 = 1e-5;
+
 /// Inradius of a regular octagon in the unit circle; the same times √2 for its diagonal sides.
 const OCTAGON: [f64; 2] = [0.923_879_532_511_286_7, 1.306_562_964_876_376_5];
 
@@ -322,14 +325,12 @@ fn tcp_rows(
     }
     let rate = twist.fixed_rows::<3>(0).into_owned();
     let speed = rate.norm();
-    if speed == 0.0 {
-        return rows;
-    }
     let bend = tool.jacobian(model, &at.q) * nalgebra::Vector6::from(at.q2)
         + tool.jacobian_dot(model, &at.q, &at.q1) * nalgebra::Vector6::from(at.q1);
     let bend = bend.fixed_rows::<3>(0).into_owned();
-    let along = bend.dot(&rate) / speed;
-    let across = (bend - rate * (along / speed)).norm();
+    // Where the TCP turns back, it moves along its acceleration just before and behind.
+    let along = if speed < TURNS_BACK { bend.norm() } else { bend.dot(&rate) / speed };
+    let across = if speed < TURNS_BACK { 0.0 } else { (bend - rate * (along / speed)).norm() };
     let row = |t: f64, n: f64, limit: f64, constant: f64| Row {
         u: t * speed / limit,
         b: (t * along + n * across) / limit,

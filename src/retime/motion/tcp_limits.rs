@@ -10,8 +10,9 @@ use crate::retime::path::JointPath;
 
 /// Longest step between two samples, s.
 const STEP: f64 = 0.002;
-/// TCP speed below which its direction is undefined, m/s.
-const SLOW: f64 = 1e-4;
+/// Half of the time over which the acceleration along the path is the mean change of speed, s. Where
+/// the TCP turns back, its momentary value has steps.
+const HALF_SPAN: f64 = 0.01;
 
 /// True if a leg has a limit on the TCP acceleration.
 pub(super) fn limited(caps: &[SpeedCap]) -> bool {
@@ -31,19 +32,24 @@ pub(super) fn worst(
     let leg_worst = |leg: usize| {
         let end = motion.time_at(path.leg_end(leg));
         let tool = path.extent(leg).tool;
+        let speed = |time: f64| {
+            let state = motion.at(time);
+            let twist = tool.jacobian(model, &state.q) * nalgebra::Vector6::from(state.qd);
+            twist.fixed_rows::<3>(0).norm()
+        };
         let steps = ((end - begin) / STEP).ceil().max(1.0);
         let mut worst: f64 = 0.0;
         for i in 0..=steps as usize {
-            let state = motion.at(begin + (end - begin) * i as f64 / steps);
+            let time = begin + (end - begin) * i as f64 / steps;
+            let state = motion.at(time);
             let qd = nalgebra::Vector6::from(state.qd);
             let jacobian = tool.jacobian(model, &state.q);
-            let v = (jacobian * qd).fixed_rows::<3>(0).into_owned();
             let a = jacobian * nalgebra::Vector6::from(state.qdd)
                 + tool.jacobian_dot(model, &state.q, &state.qd) * qd;
-            let a = a.fixed_rows::<3>(0).into_owned();
-            worst = worst.max(a.norm() / caps[leg].world_acceleration);
-            if v.norm() > SLOW {
-                let along = a.dot(&v) / v.norm();
+            worst = worst.max(a.fixed_rows::<3>(0).norm() / caps[leg].world_acceleration);
+            let [from, to] = [(time - HALF_SPAN).max(begin), (time + HALF_SPAN).min(end)];
+            if to > from {
+                let along = (speed(to) - speed(from)) / (to - from);
                 let [up, down] = caps[leg].path_acceleration;
                 worst = worst.max(along / up).max(-along / down);
             }

@@ -2,6 +2,7 @@
 
 use crate::arm::dynamics::Data;
 use crate::arm::robot::Model;
+use crate::rapid::ir::movement::Settings;
 use crate::retime::energy::power::power;
 use crate::retime::motion::Simulation;
 use crate::retime::motion::controller::joint_limits;
@@ -71,6 +72,21 @@ impl Loads {
             acceleration: half(limits.acceleration, self.acceleration),
             jerk: half(limits.jerk, self.jerk),
             torque: half(limits.torque, self.torque),
+        }
+    }
+
+    /// The loads, at most the limits of the robot under `AccSet`.
+    #[must_use]
+    pub fn under(self, model: &Model, settings: &Settings) -> Loads {
+        let limits = Loads::limits(model);
+        let [_, acceleration, ramp] = settings.shares();
+        let least = |own: Joints, limit: Joints, share: f64| -> Joints {
+            std::array::from_fn(|j| own[j].min(share * limit[j]))
+        };
+        Loads {
+            acceleration: least(self.acceleration, limits.acceleration, acceleration),
+            jerk: least(self.jerk, limits.jerk, acceleration * ramp),
+            torque: self.torque,
         }
     }
 

@@ -70,7 +70,12 @@ impl Ceilings {
             };
             Ceiling { tcp: tcp.min(fastest), corner: corner.min(fastest), joints }
         });
-        Ceilings { moves: moves.collect(), loads: freedom.loads(model) }
+        let settings = run.moves.first().map(|record| &record.movement.settings);
+        let loads = match settings {
+            Some(settings) => freedom.loads(model).under(model, settings),
+            None => freedom.loads(model),
+        };
+        Ceilings { moves: moves.collect(), loads }
     }
 }
 

@@ -2,107 +2,12 @@
 //!
 //! Each run has a convex trade-off of energy over time; at the optimum the slopes of all runs are
 //! equal. Where a signal comes at a known time, a slower run before it replaces the wait. With
-//! piecewise linear trade-offs the whole is one linear program.
+//! piecewise linear trade-offs the whole is one linear program for each way to spend the rest of the
+//! takt; the cheapest of their solutions is the optimum.
 
 use super::cone::{Affine, ConeProgram, ConeStatus};
-
-/// Energy of a run over its duration: points (s, J) with rising time on a convex curve.
-#[derive(Clone, Debug, PartialEq)]
-pub struct EnergyCurve {
-    points: Vec<(f64, f64)>,
-}
-
-/// Energy of a run at one duration.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Known {
-    /// s.
-    pub time: f64,
-    /// J.
-    pub energy: f64,
-    /// dE/dt, W.
-    pub slope: f64,
-}
-
-impl Known {
-    /// Energy at another time (s), J, if the slope falls with a power of the time.
-    fn law(&self, power: i32, time: f64) -> f64 {
-        let fall = 1.0 - (self.time / time).powi(power - 1);
-        self.energy + self.slope * self.time / f64::from(power - 1) * fall
-    }
-}
-
-/// Curve points per interval between known times.
-const REFINEMENT: usize = 12;
-/// Exponent with which the slope falls over time. Measured on the runs of `fixtures/pick_place`:
-/// 3.6 to 4.6 for longer times than the original, 4 to 7.6 for shorter ones.
-const LONGER: i32 = 4;
-const SHORTER: i32 = 6;
-
-impl EnergyCurve {
-    /// The curve from the shortest to the longest time (s) through known points of rising time.
-    /// `None` without a finite point.
-    pub fn through(known: &[Known], (shortest, longest): (f64, f64)) -> Option<EnergyCurve> {
-        let (first, last) = (*known.first()?, *known.last()?);
-        let between = |from: f64, to: f64, energy: &dyn Fn(f64) -> f64| -> Vec<(f64, f64)> {
-            let time = |i: usize| from + (to - from) * i as f64 / REFINEMENT as f64;
-            (0..=REFINEMENT).map(|i| (time(i), energy(time(i)))).collect()
-        };
-        let quicker = between(shortest.min(first.time), first.time, &|t| first.law(SHORTER, t));
-        let slower = between(last.time, longest.max(last.time), &|t| last.law(LONGER, t));
-        let inside = known.windows(2).flat_map(|pair| {
-            between(pair[0].time, pair[1].time, &|t| hermite(pair[0], pair[1], t))
-        });
-        EnergyCurve::new(quicker.into_iter().chain(inside).chain(slower).collect())
-    }
-
-    /// The lower convex hull of points (s, J); `None` without a finite point.
-    pub fn new(mut points: Vec<(f64, f64)>) -> Option<EnergyCurve> {
-        points.retain(|(t, e)| t.is_finite() && e.is_finite());
-        points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-        points.dedup_by(|later, earlier| later.0 == earlier.0);
-        let mut hull: Vec<(f64, f64)> = Vec::with_capacity(points.len());
-        for point in points {
-            while let [.., a, b] = hull.as_slice()
-                && slope(*a, *b) >= slope(*b, point)
-            {
-                hull.pop();
-            }
-            hull.push(point);
-        }
-        (!hull.is_empty()).then_some(EnergyCurve { points: hull })
-    }
-
-    /// Shortest and longest time, s.
-    pub fn range(&self) -> (f64, f64) {
-        (self.points[0].0, self.points[self.points.len() - 1].0)
-    }
-
-    /// The curve as a maximum of lines: slope (W) and energy at time 0 (J) of each.
-    fn lines(&self) -> Vec<(f64, f64)> {
-        match self.points.as_slice() {
-            [(_, energy)] => vec![(0.0, *energy)],
-            points => points
-                .windows(2)
-                .map(|pair| (slope(pair[0], pair[1]), pair))
-                .map(|(slope, pair)| (slope, pair[0].1 - slope * pair[0].0))
-                .collect(),
-        }
-    }
-}
-
-/// Cubic Hermite interpolation between two known points, J.
-fn hermite(a: Known, b: Known, time: f64) -> f64 {
-    let h = b.time - a.time;
-    let x = (time - a.time) / h;
-    let (v0, v1) = (h * a.slope, h * b.slope);
-    let step = b.energy - a.energy;
-    let cubic = v0 + v1 - 2.0 * step;
-    a.energy + x * (v0 + x * (step - v0 - cubic + x * cubic))
-}
-
-fn slope(a: (f64, f64), b: (f64, f64)) -> f64 {
-    (b.1 - a.1) / (b.0 - a.0)
-}
+use super::convex_curve::EnergyCurve;
+use super::resting::{Resting, cheapest};
 
 /// A part of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -136,13 +41,20 @@ pub struct Cycle {
     pub parts: Vec<Part>,
     /// Longest duration of the cycle, s.
     pub takt: f64,
-    /// Power at standstill for the rest of the takt, W.
-    pub resting_w: f64,
+    /// The ways to spend the rest of the takt; standing, which has no shortest time, is the first.
+    pub resting: Vec<Resting>,
 }
 
 impl Cycle {
     /// The duration of each run (s) for least total energy. `None` if the takt is too short.
     pub fn share(&self, curves: &[EnergyCurve]) -> Option<Vec<f64>> {
+        let plans = self.resting.iter().filter_map(|way| self.share_before(way, curves));
+        plans.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(times, _)| times)
+    }
+
+    /// The duration of each run (s) for least total energy if the rest of the takt is spent in this
+    /// way, and that energy in units. `None` if no time is left for it.
+    fn share_before(&self, way: &Resting, curves: &[EnergyCurve]) -> Option<(Vec<f64>, f64)> {
         let arrivals =
             self.parts.iter().filter(|part| matches!(part, Part::Arrival { .. })).count();
         let runs = curves.len();
@@ -175,8 +87,9 @@ impl Cycle {
             }
             ends.push(now.clone());
         }
-        program.minimize(&now.clone().times(-self.resting_w / UNIT));
-        program.at_most_zero(now.shift(-self.takt * (1.0 + ROUNDING)));
+        let spare = now.clone().times(-1.0).shift(self.takt - way.least_s);
+        program.minimize(&spare.times(way.power_w / UNIT).shift(way.energy_j / UNIT));
+        program.at_most_zero(now.shift(way.least_s - self.takt * (1.0 + ROUNDING)));
         for (run, curve) in curves.iter().enumerate() {
             let (shortest, longest) = curve.range();
             program.at_most_zero(Affine::constant(shortest).plus(time(run), -1.0));
@@ -193,7 +106,8 @@ impl Cycle {
                     let (shortest, longest) = curve.range();
                     t.clamp(shortest, longest)
                 };
-                Some(solution.x.iter().zip(curves).map(within).collect())
+                let times = solution.x.iter().zip(curves).map(within).collect();
+                Some((times, solution.objective))
             }
             ConeStatus::Infeasible | ConeStatus::Failed => None,
         }
@@ -227,7 +141,7 @@ impl Cycle {
                     }
                 }
         });
-        energy + self.resting_w * (self.takt - self.time(times)).max(0.0)
+        energy + cheapest(&self.resting, self.takt - self.time(times)).1
     }
 }
 
@@ -246,6 +160,7 @@ fn part_time(part: &Part, times: &[f64], ends: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::retime::optimize::resting::{IdleState, ways};
 
     const TOLERANCE: f64 = 1e-3;
 
@@ -253,7 +168,7 @@ mod tests {
     const BOWL: f64 = 0.11;
 
     fn cycle(parts: &[Part], takt: f64) -> Cycle {
-        Cycle { parts: parts.to_vec(), takt, resting_w: 0.0 }
+        Cycle { parts: parts.to_vec(), takt, resting: ways(0.0, &[], 0.0) }
     }
 
     /// a / t: short durations cost more.
@@ -270,25 +185,6 @@ mod tests {
         // a / t² is equal for both, so t is proportional to √a.
         assert!((times[0] - 2.0).abs() < 0.02 && (times[1] - 4.0).abs() < 0.02, "{times:?}");
         assert!((cycle.time(&times) - 8.0).abs() < TOLERANCE);
-    }
-
-    #[test]
-    fn a_few_known_times_make_a_close_curve() {
-        // The slope falls with the fourth power of the time.
-        let energy = |t: f64| 90.0 / t.powi(3);
-        let known = |t: f64| Known { time: t, energy: energy(t), slope: -270.0 / t.powi(4) };
-        let worst = |times: &[f64]| {
-            let known: Vec<Known> = times.iter().map(|t| known(*t)).collect();
-            let curve = EnergyCurve::through(&known, (0.9, 2.0)).expect("points");
-            assert_eq!(curve.range(), (0.9, 2.0));
-            let errors = curve.points.iter().map(|(t, e)| (e - energy(*t)).abs() / energy(*t));
-            errors.fold(0.0, f64::max)
-        };
-        // Before the first point the assumed exponent is larger than this one.
-        assert!(worst(&[1.0, 1.4, 2.0]) < 0.05, "{}", worst(&[1.0, 1.4, 2.0]));
-        assert!(worst(&[0.9, 1.0, 1.2, 1.4, 1.7, 2.0]) < 2e-3);
-        // One point is enough if the exponent is right.
-        assert!(worst(&[0.9]) < 1e-9);
     }
 
     #[test]
@@ -327,7 +223,7 @@ mod tests {
     #[test]
     fn the_rest_of_the_takt_is_paid_for() {
         let parts = [Part::Run(0)];
-        let free = Cycle { resting_w: 0.0, ..cycle(&parts, 4.0) };
+        let free = cycle(&parts, 4.0);
         // Beyond 2 s a slower run needs more energy.
         let bowl = EnergyCurve::new(
             (10..=50).map(f64::from).map(|t| (t / 10.0, (t / 10.0 - 2.0).powi(2))).collect(),
@@ -336,7 +232,7 @@ mod tests {
         let times = free.share(&bowl).expect("possible");
         assert!((times[0] - 2.0).abs() < BOWL, "{times:?}");
         // Standstill takes 2 W, so the run is slowed to the time at which its slope is 2 W.
-        let paid = Cycle { resting_w: 2.0, ..free };
+        let paid = Cycle { resting: ways(2.0, &[], 0.0), ..free };
         let times = paid.share(&bowl).expect("possible");
         assert!((times[0] - 3.0).abs() < BOWL, "{times:?}");
         assert!((paid.energy(&[3.0], &[1.0]) - 3.0).abs() < TOLERANCE);
@@ -347,10 +243,54 @@ mod tests {
         assert_eq!(cycle(&[Part::Run(0), Part::Fixed(1.0)], 1.9).share(&[curve(1.0)]), None);
     }
 
+    /// All times on a grid, with the energy of the rest written out.
     #[test]
-    fn only_the_convex_hull_counts() {
-        let curve = EnergyCurve::new(vec![(1.0, 4.0), (2.0, 5.0), (3.0, 0.0), (2.5, 3.0)]);
-        assert_eq!(curve, Some(EnergyCurve { points: vec![(1.0, 4.0), (3.0, 0.0)] }));
-        assert_eq!(EnergyCurve::new(vec![(f64::NAN, 1.0)]), None);
+    fn idle_states_are_used_where_a_search_over_all_times_uses_them() {
+        let state =
+            |power_w, wake_s, wake_j| IdleState { name: String::new(), power_w, wake_s, wake_j };
+        let curves = [curve(100.0), curve(400.0)];
+        let wait = Part::Arrival { since: None, delay: 2.5, least: 0.0, holding_w: 30.0 };
+        let parts = [Part::Run(0), wait, Part::Run(1), Part::Fixed(0.5)];
+        let standing_w = 60.0;
+        let mut used = Vec::new();
+        for states in [
+            vec![],
+            vec![state(5.0, 3.0, 10.0)],
+            vec![state(30.0, 0.5, 0.0), state(2.0, 3.0, 60.0)],
+            vec![state(0.0, 50.0, 0.0)],
+        ] {
+            for takt in [5.0, 7.0, 9.5, 13.0, 20.0] {
+                let resting = ways(standing_w, &states, 0.0);
+                let cycle = Cycle { parts: parts.to_vec(), takt, resting };
+                let whole = |a: f64, b: f64| {
+                    let waited = (2.5 - a).max(0.0);
+                    let rest = takt - (a + waited + b + 0.5);
+                    if rest < 0.0 {
+                        return f64::INFINITY;
+                    }
+                    let of_state = |s: &IdleState| {
+                        let asleep = s.power_w * (rest - s.wake_s);
+                        let energy = asleep + standing_w * s.wake_s + s.wake_j;
+                        if rest < s.wake_s { f64::INFINITY } else { energy }
+                    };
+                    let idle = states.iter().map(of_state).fold(standing_w * rest, f64::min);
+                    100.0 / a + 400.0 / b + 30.0 * waited + idle
+                };
+                let grid = || (0..=200).map(|i| 1.0 + 0.02 * f64::from(i));
+                let all = grid().flat_map(|a| grid().map(move |b| (a, b)));
+                let least = all.map(|(a, b)| whole(a, b)).fold(f64::INFINITY, f64::min);
+                let times = cycle.share(&curves).expect("possible");
+                let found = whole(times[0].min(5.0), times[1] - 1e-6);
+                assert!((found - least).abs() < 0.1, "{takt} s: {found} J, {least} J, {times:?}");
+                let energies = [100.0 / times[0], 400.0 / times[1]];
+                assert!((cycle.energy(&times, &energies) - found).abs() < 0.1);
+                used.push(cheapest(&cycle.resting, takt - cycle.time(&times)).0);
+            }
+        }
+        // Slower travel is worth more than a short sleep, and one state takes too long to wake up.
+        assert_eq!(used[..5], [0; 5]);
+        assert_eq!(used[5..10], [0, 0, 0, 0, 1]);
+        assert!(used[10..15].contains(&1) && used[10..15].contains(&2), "{used:?}");
+        assert_eq!(used[15..], [0; 5]);
     }
 }

@@ -1,7 +1,7 @@
 //! Least energy of a run as a function of its time.
 
-use super::cycle::{EnergyCurve, Known};
-use super::energy_program::{EnergyBound, energy_bound, minimize_energy};
+use super::convex_curve::{EnergyCurve, Known};
+use super::energy_program::{EnergyBound, EnergyOptimum, energy_bound, minimize_energy};
 use super::margins::{Margins, SPACINGS};
 use super::path_energy::evaluate;
 use super::run_problem::{INTERVALS, RunProblem, Task, fastest_profile};
@@ -21,6 +21,8 @@ const RESERVE: f64 = 1.05;
 const COARSE: usize = 20;
 /// Relative distance of times within which no further point is computed.
 const NEAR: f64 = 0.03;
+/// Relative distance of times that count as one.
+const ROUNDING: f64 = 1e-6;
 /// Relative time step of the finite difference of the energy.
 const LONGER: f64 = 1e-3;
 
@@ -38,32 +40,95 @@ pub struct TimeEnergy {
 /// `count` points of the curve of energy over time, from the least time of the path to that of
 /// the run or to a multiple of the least. The jerk is not limited. Empty if the path has no timing.
 pub fn pareto(task: &Task<'_>, count: usize) -> Vec<TimeEnergy> {
-    let curve = || {
+    let Some(path) = FullPath::new(task) else { return Vec::new() };
+    let (run, robot) = (task.run, task.model);
+    let longest = (CURVE * path.least).max(run.duration() - run.settling);
+    let held = account::at_rest(robot, &run.load, &run.end, run.settling).energy_j();
+    let point = |i: usize| {
+        let share = if count > 1 { i as f64 / (count - 1) as f64 } else { 0.0 };
+        let time = path.least * (longest / path.least).powf(share);
+        let optimum = path.optimum(time)?;
+        let idle = account::base(robot, time).energy_j() + held;
+        Some(TimeEnergy {
+            time_s: time + run.settling,
+            energy_j: optimum.energy.total() + idle,
+            lower_bound_j: optimum.lower_bound.min(optimum.energy.total()) + idle,
+        })
+    };
+    (0..count).filter_map(point).collect()
+}
+
+/// The path of a run on a fine grid, without reserves.
+struct FullPath<'a> {
+    problem: RunProblem<'a>,
+    grid: PathGrid,
+    limits: PathLimits,
+    fast: Profile,
+    /// Least moving time with an interior, s.
+    least: f64,
+}
+
+impl<'a> FullPath<'a> {
+    fn new(task: &'a Task<'a>) -> Option<FullPath<'a>> {
         let problem = RunProblem::new(task).ok()?;
         let (grid, limits) = problem.bare_grid(&Margins::none(), INTERVALS).ok()?;
         let fast = fastest_profile(&grid, &limits).ok()?;
-        let (run, robot) = (task.run, task.model);
         let least = RESERVE_OF_CURVE * fast.duration();
-        let longest = (CURVE * least).max(run.duration() - run.settling);
-        let held = account::at_rest(robot, &run.load, &run.end, run.settling).energy_j();
-        let point = |i: usize| {
-            let share = if count > 1 { i as f64 / (count - 1) as f64 } else { 0.0 };
-            let time = least * (longest / least).powf(share);
-            let bound = energy_bound(&grid, &limits, &problem.electrical, &fast, time);
-            let from = bound.as_ref();
-            let model = &problem.electrical;
-            let optimum = minimize_energy(&grid, &limits, model, &fast, time, from);
-            let optimum = optimum.into_optimum()?;
-            let idle = account::base(robot, time).energy_j() + held;
-            Some(TimeEnergy {
-                time_s: time + run.settling,
-                energy_j: optimum.energy.total() + idle,
-                lower_bound_j: optimum.lower_bound.min(optimum.energy.total()) + idle,
-            })
-        };
-        Some((0..count).filter_map(point).collect())
+        Some(FullPath { problem, grid, limits, fast, least })
+    }
+
+    /// Least energy in a moving time (s), with its bound.
+    fn optimum(&self, time: f64) -> Option<EnergyOptimum> {
+        let (grid, limits, model) = (&self.grid, &self.limits, &self.problem.electrical);
+        let bound = energy_bound(grid, limits, model, &self.fast, time);
+        minimize_energy(grid, limits, model, &self.fast, time, bound.as_ref()).into_optimum()
+    }
+}
+
+/// Times of a trade-off before and after the time of the run.
+const FASTER: usize = 5;
+const SLOWER: usize = 10;
+
+/// Motion energy of a run over its time with settling: curves from the least time to a multiple of
+/// the time of the run.
+pub struct TradeOff {
+    /// Least energy; what lies on it or above can be reached.
+    pub reachable: EnergyCurve,
+    /// Lower bound of the energy. Between computed times it follows from convexity.
+    pub bound: EnergyCurve,
+}
+
+/// The trade-off of a run on its path, up to `longest` (s). `also`: further times (s) with energies
+/// (J) that can be reached. The jerk is not limited. `None` if the path has no timing.
+pub fn trade_off(task: &Task<'_>, longest: f64, also: &[(f64, f64)]) -> Option<TradeOff> {
+    let path = FullPath::new(task)?;
+    let settling = task.run.settling;
+    let now = (task.run.duration() - settling).max(path.least);
+    // Close to each other where the curve is steep.
+    let between = |from: f64, to: f64, count: usize| {
+        (0..count).map(move |i| from * (to / from).powf((i as f64 / count as f64).powi(2)))
     };
-    curve().unwrap_or_default()
+    let last = (longest - settling).max(now);
+    let times = between(path.least, now, FASTER).chain(between(now, last, SLOWER)).chain([last]);
+    let (mut reachable, mut bound) = (also.to_vec(), Vec::<(f64, f64)>::new());
+    for time in times {
+        if bound.last().is_some_and(|(before, _)| time + settling <= before * (1.0 + ROUNDING)) {
+            continue;
+        }
+        let Some(optimum) = path.optimum(time) else { continue };
+        let least = optimum.energy.total();
+        bound.push((time + settling, optimum.lower_bound.min(least)));
+        reachable.push((optimum.profile.duration() + settling, least));
+        // The optimum may take less time than it may.
+        if let Some(slow) = optimum.profile.scaled_to(time) {
+            let energy = evaluate(&path.grid, &slow, &path.problem.electrical).total();
+            reachable.push((time + settling, energy));
+        }
+    }
+    Some(TradeOff {
+        reachable: EnergyCurve::new(reachable)?,
+        bound: EnergyCurve::below(&bound, longest)?,
+    })
 }
 
 /// Least energy of the motion of a run over its time (with settling), computed at chosen times.

@@ -15,7 +15,7 @@ use crate::rapid::ir::value::Dependence;
 use crate::rapid::text::Span;
 use crate::retime::motion::Simulation;
 use crate::retime::motion::timed::TimedMotion;
-use crate::retime::motion::timeline::{Run, What};
+use crate::retime::motion::timeline::{MoveRecord, Run, What};
 use crate::retime::path::joint_path::{DOF, JointPath, Joints, PieceKind};
 
 /// A place of the program with its variants.
@@ -220,6 +220,12 @@ fn eligibility(run: &Run, first: bool) -> Result<(), Reason> {
     if run.moves.windows(2).any(|pair| pair[0].movement.tool != pair[1].movement.tool) {
         return Err(Reason::Setting("a change of tool".into()));
     }
+    let limits = |record: &MoveRecord| {
+        (record.movement.settings.limits(), record.movement.settings.axiswise_wrist())
+    };
+    if run.moves.windows(2).any(|pair| limits(&pair[0]) != limits(&pair[1])) {
+        return Err(Reason::Setting("a change of VelSet, AccSet or SingArea".into()));
+    }
     if !run.start_known {
         return Err(Reason::UnknownStart("a movement before it could not be worked out".into()));
     }
@@ -266,10 +272,10 @@ fn movement_is_eligible(movement: &Movement) -> Result<(), Reason> {
         return Err(Reason::Argument(name.to_string()));
     }
     let settings = &movement.settings;
+    let bends_line = !settings.axiswise_wrist()
+        && matches!(movement.form, MoveForm::Linear | MoveForm::Circular);
     match &settings.sing_area {
-        Some(option) if matches!(movement.form, MoveForm::Linear | MoveForm::Circular) => {
-            Err(Reason::Setting(option.to_string()))
-        }
+        Some(option) if bends_line => Err(Reason::Setting(option.to_string())),
         _ => settings_allow(settings),
     }
 }
@@ -300,8 +306,6 @@ pub fn not_constant(movement: &Movement) -> Option<Reason> {
 fn settings_allow(settings: &Settings) -> Result<(), Reason> {
     let limits_path = settings.path_acceleration.iter().any(|limit| limit.is_finite());
     let in_force = [
-        (settings.speed_override != 1.0, "VelSet"),
-        (settings.acceleration != 1.0 || settings.ramp != 1.0, "AccSet"),
         (settings.fine_point_ramp != 1.0, "AccSet\\FinePointRamp"),
         (settings.refresh != 1.0, "SpeedRefresh"),
         (limits_path, "PathAccLim"),

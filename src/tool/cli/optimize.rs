@@ -18,13 +18,15 @@ use super::{backinfo, input, listing, output, streams, suggest, undo};
 use crate::rapid::text::charset;
 use crate::retime::optimize::cost::Cost;
 use crate::retime::optimize::freedom::{Bound, Freedom};
+use crate::retime::optimize::resting::IdleState;
 use crate::retime::optimize::retime::SLOWEST;
+use crate::tool::config::{Config, Idle};
 use crate::tool::emit::Layout;
 use crate::tool::report::place::Places;
 use crate::tool::report::{self};
 use crate::tool::retrofit::{
-    Budget, CLOSEST_S, Form, Objective, Retrofit, SPACING_S, Settings, freed, is_streams, retrofit,
-    written_in,
+    Budget, CLOSEST_S, Form, Objective, Retrofit, SPACING_S, Settings, declared_in, freed,
+    is_streams, retrofit, written_in,
 };
 use crate::tool::suggest::Applied;
 
@@ -68,8 +70,8 @@ pub(super) struct OptimizeArgs {
     #[arg(long, value_enum, default_value_t = EnergyArg::Electrical)]
     energy: EnergyArg,
 
-    /// Add the curve of least energy over time of each segment to the JSON and the report, with
-    /// so many points.
+    /// Add the curves of least energy over time of the cycle and of each segment to the JSON and the
+    /// report, with so many points.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=200), hide_default_value = true)]
     pareto: u16,
 
@@ -111,6 +113,11 @@ pub(super) struct OptimizeArgs {
     /// by `ModPos` afterwards, because no guard sees it.
     #[arg(long)]
     inline_targets: bool,
+
+    /// No task that is not given reads the PERS data of this program: a run may then go on behind a
+    /// statement that writes such data. A whole backup has all tasks.
+    #[arg(long)]
+    only_task: bool,
 
     /// Let joint movements leave their path, and lines and arcs whose statement has the comment
     /// `! joulepath: free` on its line.
@@ -345,6 +352,7 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
     if args.dwell_pose.is_some() && args.emit != EmitArg::Absj {
         bail!("--dwell-pose needs streams: leave out --emit, or give --emit absj");
     }
+    let has_all_tasks = args.only_task || whole_backup(&args.program.cell.paths, job).is_some();
     Ok(Settings {
         entry: job.entry.clone(),
         options: job.options.clone(),
@@ -353,6 +361,7 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
             ObjectiveArg::Time => Objective::Time,
         },
         budget,
+        idle: idle_states(&job.config),
         spacing_s,
         closest_s: if asked.is_some() { spacing_s } else { CLOSEST_S },
         freedom: Freedom {
@@ -385,7 +394,19 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
         dwell_pose: args.dwell_pose.map(dwell_pose).transpose()?,
         pareto: usize::from(args.pareto),
         written_elsewhere: written_in(job.others()),
+        read_elsewhere: has_all_tasks.then(|| declared_in(job.others())),
     })
+}
+
+/// The idle states of the configuration.
+fn idle_states(config: &Config) -> Vec<IdleState> {
+    let state = |(name, &Idle { power_w, wake_s, wake_j }): (&String, &Idle)| IdleState {
+        name: name.clone(),
+        power_w,
+        wake_s,
+        wake_j,
+    };
+    config.idle.iter().map(state).collect()
 }
 
 /// The bound of a speed that a flag may free.

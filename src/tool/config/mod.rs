@@ -1,7 +1,9 @@
 //! `joulepath.toml`: the permanent settings of a cell.
 
+mod idle;
 mod lint;
 
+pub use idle::Idle;
 pub use lint::Lint;
 
 use std::collections::BTreeMap;
@@ -32,6 +34,9 @@ pub struct Config {
     /// Levels of inputs that the program asks for.
     #[serde(default)]
     pub assume: BTreeMap<String, f64>,
+    /// Idle states of the controller for the rest of the takt, by name.
+    #[serde(default)]
+    pub idle: BTreeMap<String, Idle>,
     /// Zones that arm and tool must avoid if a movement leaves its path.
     #[serde(default)]
     pub keep_out: Vec<KeepOut>,
@@ -66,7 +71,7 @@ pub enum ConfigError {
     /// Its content is wrong.
     #[error(
         "{path}: {reason}; known keys are robot, entry, takt_s, hours_per_year, spacing_s, [inputs], [assume], \
-         [[keep_out]] with box or plane, and [lint]"
+         [idle.NAME] with power_w, wake_s and wake_j, [[keep_out]] with box or plane, and [lint]"
     )]
     Wrong {
         /// Its path.
@@ -79,12 +84,15 @@ pub enum ConfigError {
 /// Parses a configuration; `path` names it in messages.
 ///
 /// # Errors
-/// Wrong TOML, unknown keys, wrong types.
+/// Wrong TOML, unknown keys, wrong types, idle states with impossible numbers.
 pub fn parse(path: &str, text: &str) -> Result<Config, ConfigError> {
-    toml::from_str(text).map_err(|error| ConfigError::Wrong {
-        path: path.to_owned(),
-        reason: error.to_string().trim().to_owned(),
-    })
+    let wrong = |reason: String| ConfigError::Wrong { path: path.to_owned(), reason };
+    let config: Config =
+        toml::from_str(text).map_err(|error| wrong(error.to_string().trim().to_owned()))?;
+    match config.idle.iter().find_map(|(name, idle)| idle.fault(name)) {
+        Some(fault) => Err(wrong(fault)),
+        None => Ok(config),
+    }
 }
 
 /// The possible configuration files of a program, nearest first.
@@ -106,5 +114,23 @@ mod tests {
                     [[keep_out]]\nplane = [1, 0, 0, -0.8]\n";
         let config = parse("joulepath.toml", text).expect("valid");
         assert_eq!(config.keep_out[1], KeepOut::Plane([1.0, 0.0, 0.0, -0.8]));
+    }
+
+    #[test]
+    fn impossible_idle_states_are_refused() {
+        let state = |numbers: &str| parse("joulepath.toml", &format!("[idle.sleep]\n{numbers}"));
+        let config = state("power_w = 60\nwake_s = 4.5").expect("valid");
+        assert_eq!(config.idle["sleep"], Idle { power_w: 60.0, wake_s: 4.5, wake_j: 0.0 });
+        for (numbers, named) in [
+            ("power_w = -1\nwake_s = 4", "[idle.sleep]: power_w = -1: give a number of W"),
+            ("power_w = 60\nwake_s = inf", "[idle.sleep]: wake_s = inf: give a number of s"),
+            ("power_w = 60\nwake_s = 4\nwake_j = nan", "wake_j = NaN: give a number of J"),
+            ("power_w = 60", "missing field `wake_s`"),
+            ("power_w = 60\nwake_s = 4\nwake = 3", "unknown field `wake`"),
+        ] {
+            let error = state(numbers).expect_err(numbers).to_string();
+            assert!(error.contains(named), "{numbers}: {error}");
+            assert!(error.contains("[idle.NAME] with power_w, wake_s and wake_j"), "{error}");
+        }
     }
 }

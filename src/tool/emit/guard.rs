@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use serde::Serialize;
 use tera::{Context, Tera};
 
-use super::site::{EmitError, Parameter, Recorded, Site, Stop};
+use super::site::{EmitError, Now, Parameter, Recorded, Site, Stop};
 use crate::rapid::ir::number::number;
 use crate::rapid::text::{Charset, Edit, SourceFile, Span};
 
@@ -108,7 +108,11 @@ pub(super) fn guard(site: &Site, prefix: &str, recorded: &Recorded, index: usize
 }
 
 fn part(parameter: &Parameter, prefix: &str, name: String) -> PartText {
-    let own = if parameter.text.is_some() { name.clone() } else { format!("{prefix}Load") };
+    let (own, text) = match &parameter.now {
+        Now::Argument(text) => (name.clone(), text.clone()),
+        Now::Load => (format!("{prefix}Load"), String::new()),
+        Now::Anywhere(expression) => ((*expression).to_owned(), String::new()),
+    };
     let near = match parameter.type_name {
         "robtarget" if parameter.is_computed => Some("NearTarget"),
         "jointtarget" if parameter.is_computed => Some("NearJoints"),
@@ -122,7 +126,7 @@ fn part(parameter: &Parameter, prefix: &str, name: String) -> PartText {
     PartText {
         r#type: parameter.type_name,
         label: escaped(&parameter.label.chars().take(LABEL).collect::<String>()),
-        text: parameter.text.clone().unwrap_or_default(),
+        text,
         now,
         name,
     }

@@ -23,8 +23,8 @@ pub use guard::{EDIT_REMARKS, end_of_line};
 pub use layout::Layout;
 pub use names::{Names, has_streams, missing_streams, redeclared_name};
 pub use site::{
-    EmitError, Emitted, EmittedStream, MotionSettings, Parameter, Pause, PutOff, Recorded, Robot,
-    Site, Stop, Word,
+    EmitError, Emitted, EmittedStream, MotionSettings, Now, Parameter, Pause, PutOff, Recorded,
+    Robot, Site, Stop, Word,
 };
 pub use stream_module::{Emission, emit};
 pub use stream_test::{TestStream, stream_test};

@@ -33,14 +33,25 @@ impl Site {
 /// A value that a guard compares.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
-    /// The expression in the program, on one line; `None` for a value that the module records.
-    pub text: Option<String>,
+    /// Its value now.
+    pub now: Now,
     /// Name in messages.
     pub label: String,
     /// The name of its type.
     pub type_name: &'static str,
     /// Whether the controller computes it, so that its last digits may differ.
     pub is_computed: bool,
+}
+
+/// How a guard gets the present value of a parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Now {
+    /// From an expression of the program, on one line.
+    Argument(String),
+    /// From the record of the load in the module.
+    Load,
+    /// From an expression that holds everywhere.
+    Anywhere(&'static str),
 }
 
 /// Motion settings on which movements depend.
@@ -137,6 +148,9 @@ pub struct Recorded {
     pub switches: Vec<&'static str>,
     /// Whether the load is recorded.
     pub load: bool,
+    /// Motion settings that guards compare with those of their streams instead of the usual ones, by
+    /// name.
+    pub compared: Vec<&'static str>,
     /// Insertions after the statements.
     pub edits: Vec<Edit>,
 }

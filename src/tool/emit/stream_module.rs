@@ -8,7 +8,7 @@ use super::layout::{Layout, parts};
 use super::literal::NO_AXIS;
 use super::names::Names;
 use super::site::{EmitError, Emitted, EmittedStream, Recorded, Robot, Site, Stop, Word};
-use crate::rapid::ir::number::{TIME_DECIMALS, joints, number};
+use crate::rapid::ir::number::{joints, number};
 use crate::rapid::text::{Charset, Edit, SourceFile, charset};
 
 /// Maximum joint distance from the start of a stream, degrees: 0.5 mm at an arm stretched to 1.45
@@ -30,9 +30,8 @@ const PAUSE_DECIMALS: usize = 7;
 
 /// Speed override at which movements take their `\T`, %.
 const FULL_SPEED: f64 = 100.0;
-/// Decimals of a `\T` that is scaled for an override, s: a fraction of a time with
-/// [`TIME_DECIMALS`].
-const STRETCHED_DECIMALS: usize = 7;
+/// Decimals of a `\T`, s: with an override, it is a fraction of a time with fewer decimals.
+const T_DECIMALS: usize = 7;
 
 #[derive(Serialize)]
 struct StreamText {
@@ -159,6 +158,7 @@ pub fn emit(emission: &Emission, sites: &[Site], stops: &[Stop]) -> Result<Emitt
     context.insert("external", &sites.iter().any(Site::has_external));
     context.insert("switches", &recorded.switches);
     context.insert("load", &recorded.load);
+    context.insert("compared", &recorded.compared);
     context.insert("count", &sites.len());
     context.insert("puts_off", &puts_off);
     let list = |text: &dyn Fn(&SiteText) -> String| texts.iter().map(text).collect::<Vec<_>>();
@@ -252,11 +252,7 @@ fn stream_text(
 
 /// `\T` of a movement that takes `t` seconds at this override, which stretches it.
 fn time(t: f64, override_percent: f64) -> String {
-    if override_percent == FULL_SPEED {
-        number(t, TIME_DECIMALS)
-    } else {
-        number(override_percent / FULL_SPEED * t, STRETCHED_DECIMALS)
-    }
+    number(override_percent / FULL_SPEED * t, T_DECIMALS)
 }
 
 fn external_axis(x: f64) -> String {

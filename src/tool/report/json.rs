@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use super::mark::mark;
 use super::place::{Place, Places};
 use super::simulated::{Simulated, StepKind};
+use super::whole_cycle;
 use crate::arm::robot::Model;
 use crate::rapid::text::Span;
 use crate::retime::energy::EnergyParts;
@@ -166,11 +167,13 @@ pub fn retrofit(
         value["motion_energy_median_j"] = json!(of.map(|of| of[1].median));
         value
     };
-    json!({
+    let mut value = json!({
         "robot": model.name,
         "entry": entry,
         "original": side(original(retrofit), uncertainty.map(|u| u.original)),
         "optimized": side(figures(&retrofit.optimized), uncertainty.map(|u| u.optimized)),
+        "takt": whole_cycle::takt_json(&retrofit.whole_cycle),
+        "whole_cycle": whole_cycle::energy_json(&retrofit.whole_cycle),
         "saving_percent": retrofit.saving_percent(),
         "saving_interval_percent": uncertainty.map(|u| interval(u.saving_percent[0])),
         "saving_median_percent": uncertainty.map(|u| u.saving_percent[0].median),
@@ -200,7 +203,11 @@ pub fn retrofit(
         "notes": retrofit.notes,
         "unresolved": unresolved(places, &retrofit.before.0),
         "assumed": assumed(model, &retrofit.before.0),
-    })
+    });
+    if !retrofit.whole_cycle.curve.is_empty() {
+        value["cycle_curve"] = whole_cycle::curve_json(&retrofit.whole_cycle);
+    }
+    value
 }
 
 fn lower_limits(lower: &LowerLimits) -> Value {

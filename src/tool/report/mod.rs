@@ -17,3 +17,4 @@ pub mod svg;
 pub mod table;
 pub mod text;
 pub mod trajectory;
+mod whole_cycle;

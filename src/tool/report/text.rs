@@ -7,6 +7,7 @@ use super::place::Places;
 use super::plausible::{energies, is_rewritten, saving};
 use super::simulated::{Simulated, Step, StepKind};
 use super::table::{Align, table};
+use super::whole_cycle;
 use crate::arm::robot::prior::is_mass_known;
 use crate::arm::robot::{Model, Provenance};
 use crate::rapid::ir::movement::Movement;
@@ -147,6 +148,7 @@ pub fn retrofit(model: &Model, places: Places<'_>, retrofit: &Retrofit) -> Strin
         String::new(),
     ]);
     let mut out = headline(model, retrofit);
+    let _ = writeln!(out, "{}", whole_cycle::text(&retrofit.whole_cycle));
     for line in saving(retrofit).into_iter().chain(remarks(retrofit)) {
         let _ = writeln!(out, "{line}");
     }

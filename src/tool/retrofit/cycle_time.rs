@@ -5,12 +5,16 @@ use super::lowered::lateness;
 use super::settings::Settings;
 use crate::arm::dynamics::Load;
 use crate::arm::robot::Model;
+use crate::retime::energy::account::base;
 use crate::retime::energy::power::holding_w;
+use crate::retime::motion::Simulation;
 use crate::retime::motion::timeline::{Event, WaitBasis, What};
 use crate::retime::optimize::cycle::{Cycle, Part};
+use crate::retime::optimize::resting::ways;
 use crate::retime::path::joint_path::Joints;
 
-/// The cycle as a sequence of parts; the rest of the takt (s) is spent at its end. Waits of known
+/// The cycle as a sequence of parts; the rest of the takt (s) is spent at its end. Its energies are
+/// without the power that is drawn at any time. Waits of known
 /// arrival keep a margin: the lateness of the original under lower limits than assumed. `runs`: the
 /// events of each run whose time is to be chosen.
 pub(super) fn cycle(
@@ -51,5 +55,19 @@ pub(super) fn cycle(
         }
     }
     let holding = |(load, q): (&Load, &Joints)| holding_w(model, load, q).iter().sum();
-    Cycle { parts, takt, resting_w: original.cycle.end().map_or(0.0, holding) }
+    let (holding, base) = (original.cycle.end().map_or(0.0, holding), base_w(model));
+    Cycle { parts, takt, resting: ways(base + holding, &settings.idle, base) }
+}
+
+/// Power that a robot with released brakes takes at any time, W.
+pub(super) fn base_w(model: &Model) -> f64 {
+    base(model, 1.0).energy_j()
+}
+
+/// Whether the cycle waits for an input whose time the user states.
+pub(super) fn awaits_stated_input(simulation: &Simulation) -> bool {
+    simulation.events.iter().any(|event| match &event.what {
+        What::Wait(record) => record.basis == WaitBasis::Input && event.duration > 0.0,
+        _ => false,
+    })
 }

@@ -1,4 +1,4 @@
-//! `PERS` data that other tasks may write: tasks share `PERS` data of the same name.
+//! `PERS` data that other tasks may read or write: tasks share `PERS` data of the same name.
 
 use std::collections::BTreeSet;
 
@@ -9,6 +9,17 @@ use crate::rapid::ir::lower;
 use crate::rapid::ir::walk::statements;
 use crate::rapid::syntax;
 use crate::rapid::text::SourceFile;
+
+/// Lower-case names of the `PERS` data that these files declare.
+pub fn declared_in<'f>(files: impl Iterator<Item = &'f SourceFile>) -> BTreeSet<String> {
+    let modules = files.flat_map(|file| {
+        let parse = syntax::parse(&file.bytes);
+        lower(file.id, &parse, &file.bytes)
+    });
+    let data = modules.flat_map(|module| module.data);
+    let pers = data.filter(|data| data.kind == DataKind::Pers);
+    pers.map(|data| data.name.key.clone()).collect()
+}
 
 /// Lower-case names of the data that these files assign or pass to routines that may write them.
 pub fn written_in<'f>(files: impl Iterator<Item = &'f SourceFile>) -> BTreeSet<String> {

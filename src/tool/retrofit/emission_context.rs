@@ -8,11 +8,13 @@ use super::job::Job;
 use super::recorded::recorded;
 use crate::arm::kinematics::fk;
 use crate::arm::robot::Model;
-use crate::rapid::ir::movement::{Argument, Movement};
+use crate::rapid::ir::movement::{self, Argument, Movement};
 use crate::rapid::ir::predefined;
 use crate::rapid::ir::value::Datum;
 use crate::rapid::text::{SourceFile, Span};
-use crate::tool::emit::{Emission, Names, Parameter, Robot};
+use crate::retime::motion::Simulation;
+use crate::retime::motion::timeline::What;
+use crate::tool::emit::{Emission, Names, Now, Parameter, Recorded, Robot};
 
 /// The constant input of all emissions.
 pub(super) struct EmissionContext<'a> {
@@ -22,6 +24,8 @@ pub(super) struct EmissionContext<'a> {
     /// The expressions that guards compare.
     pub(super) guards: &'a Guards<'a>,
     pub(super) emission: Emission,
+    /// The settings that guards compare.
+    compared: Vec<Compared>,
 }
 
 impl<'a> EmissionContext<'a> {
@@ -30,18 +34,43 @@ impl<'a> EmissionContext<'a> {
         let files: Vec<SourceFile> =
             original.files.iter().map(|source| source.file.clone()).collect();
         let names = Names::free(&files);
+        let compared = compared_settings(&original.cycle.simulation);
         let emission = Emission {
             layout: settings.layout,
             robot: robot(model),
             override_percent: 100.0 * settings.options.speed_override.unwrap_or(1.0),
-            recorded: recorded(original.program, original.files, &names),
+            recorded: Recorded {
+                compared: compared.iter().map(|setting| setting.label()).collect(),
+                ..recorded(original.program, original.files, &names)
+            },
             program: hash(&files),
             names,
             files,
         };
         let beside = original.program.modules[original.entry.module].span.file.0 as usize;
-        EmissionContext { files: original.files, beside, guards, emission }
+        EmissionContext { files: original.files, beside, guards, emission, compared }
     }
+}
+
+/// The settings of the program's movements that guards compare, because some are not the usual ones.
+fn compared_settings(simulation: &Simulation) -> Vec<Compared> {
+    let runs = simulation.events.iter().filter_map(|event| match &event.what {
+        What::Run(run) => Some(run),
+        _ => None,
+    });
+    let moves = runs.flat_map(|run| &run.moves).map(|record| &record.movement);
+    let (mut is_scaled, mut is_capped, mut wrist) = (false, false, false);
+    for Movement { speed, settings, .. } in moves {
+        is_scaled |= settings.shares() != [1.0; 3];
+        is_capped |= speed.tcp * settings.speed_override > settings.speed_max;
+        wrist |= settings.axiswise_wrist();
+    }
+    let shares = [Compared::Override, Compared::Acceleration, Compared::Ramp];
+    let mut compared = Vec::new();
+    compared.extend(shares.into_iter().filter(|_| is_scaled));
+    compared.extend(is_capped.then_some(Compared::MaxSpeed));
+    compared.extend(wrist.then_some(Compared::Wrist));
+    compared
 }
 
 /// A hash that identifies a version of the program.
@@ -77,8 +106,55 @@ pub(super) fn place(files: &[Source], span: Span) -> String {
     format!("{} {lines}", ascii(&file.relative))
 }
 
-/// The parameters and values that a guard compares: arguments, and the load if the program changes
-/// it.
+/// A setting that a guard compares with that of its streams.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Compared {
+    Override,
+    MaxSpeed,
+    Acceleration,
+    Ramp,
+    Wrist,
+}
+
+impl Compared {
+    /// The name in messages.
+    fn label(self) -> &'static str {
+        match self {
+            Compared::Override => "VelSet",
+            Compared::MaxSpeed => "VelSet max",
+            Compared::Acceleration => "AccSet",
+            Compared::Ramp => "AccSet ramp",
+            Compared::Wrist => "SingArea Wrist",
+        }
+    }
+
+    /// How a guard reads the setting.
+    fn parameter(self) -> Parameter {
+        let (expression, type_name) = match self {
+            Compared::Override => ("C_MOTSET.vel.oride", "num"),
+            Compared::MaxSpeed => ("C_MOTSET.vel.max", "num"),
+            Compared::Acceleration => ("C_MOTSET.acc.acc", "num"),
+            Compared::Ramp => ("C_MOTSET.acc.ramp", "num"),
+            Compared::Wrist => ("C_MOTSET.sing.wrist", "bool"),
+        };
+        let (now, label) = (Now::Anywhere(expression), self.label().to_owned());
+        Parameter { now, label, type_name, is_computed: false }
+    }
+
+    fn value(self, settings: &movement::Settings) -> Datum {
+        let [speed, max, acceleration, ramp] = settings.limits().map(Datum::Num);
+        match self {
+            Compared::Override => speed,
+            Compared::MaxSpeed => max,
+            Compared::Acceleration => acceleration,
+            Compared::Ramp => ramp,
+            Compared::Wrist => Datum::Bool(settings.axiswise_wrist()),
+        }
+    }
+}
+
+/// The parameters and values that a guard compares: arguments, the load if the program changes
+/// it, and settings that are not the usual ones.
 pub(super) fn compared(
     context: &EmissionContext<'_>,
     arguments: &[Argument],
@@ -89,13 +165,15 @@ pub(super) fn compared(
         let load = movement.settings.grip_load_data.clone();
         let load = load.or_else(|| predefined::lookup("load0").map(|value| value.datum));
         let parameter = Parameter {
-            text: None,
+            now: Now::Load,
             label: "GripLoad".to_owned(),
             type_name: "loaddata",
             is_computed: false,
         };
         compared.extend(load.map(|load| (parameter, load)));
     }
+    let settings = context.compared.iter();
+    compared.extend(settings.map(|it| (it.parameter(), it.value(&movement.settings))));
     compared.into_iter().unzip()
 }
 

@@ -15,7 +15,7 @@ use crate::retime::motion::timeline::{MoveRecord, Run, What};
 use crate::retime::optimize::rest::Rest;
 use crate::retime::optimize::site::Piece;
 use crate::retime::path::joint_path::are_close;
-use crate::tool::emit::{self, EmittedStream, MotionSettings, Parameter, Pause, PutOff, Word};
+use crate::tool::emit::{self, EmittedStream, MotionSettings, Now, Parameter, Pause, PutOff, Word};
 
 /// A piece with its guard.
 pub(super) struct EmittedPiece {
@@ -60,6 +60,8 @@ pub(super) fn emitted_pieces(
             let emitted = pieces
                 .entry(piece)
                 .or_insert_with(|| emitted_piece(context, piece, moves, parameters.clone()));
+            let settings = &mut emitted.site.settings;
+            settings.fastest = settings.fastest.max(fastest(moves));
             let begins_alike = |other: &EmittedStream| {
                 other.follows == follows
                     && other.values == values
@@ -140,7 +142,7 @@ fn emitted_piece(
         origin: place(context.files, piece.span()),
         parameters,
         settings: MotionSettings {
-            fastest: movements().map(|m| 1e3 * m.speed.tcp).fold(0.0, f64::max).min(MOST_SPEED),
+            fastest: fastest(moves),
             conf_joint: first.settings.conf_joint,
             conf_linear: first.settings.conf_linear,
             lines: movements().any(|movement| movement.line_speed().is_finite()),
@@ -150,6 +152,15 @@ fn emitted_piece(
         order: Vec::new(),
     };
     EmittedPiece { site, executions: Vec::new() }
+}
+
+/// The largest speed that `VelSet` allows movements, mm/s.
+fn fastest(moves: &[MoveRecord]) -> f64 {
+    let speed = |record: &MoveRecord| {
+        let Movement { speed, settings, .. } = &record.movement;
+        1e3 * (speed.tcp * settings.speed_override).min(settings.speed_max)
+    };
+    moves.iter().map(speed).fold(0.0, f64::max).min(MOST_SPEED)
 }
 
 /// The statements of movements, with the compared values in place of their arguments.
@@ -173,7 +184,7 @@ fn statements(
         for argument in arguments {
             let written = one_line(context.files, argument.span);
             let is_own = |parameter: &Parameter| {
-                parameter.text.as_ref() == Some(&written)
+                matches!(&parameter.now, Now::Argument(text) if *text == written)
                     && parameter.type_name == argument.type_name
             };
             let Some(index) = parameters.iter().position(is_own) else { continue };
@@ -208,12 +219,15 @@ fn stream(
         String::new()
     };
     let before: f64 = retiming.energy_before_j;
+    let first = &run.moves.first()?.movement;
+    // The override of VelSet stretches `\T`.
+    let speed = first.settings.speed_override;
     Some(EmittedStream {
         start: run.start,
         points: retiming.stream.points().to_vec(),
-        intervals: retiming.stream.intervals().to_vec(),
+        intervals: retiming.stream.intervals().iter().map(|time| speed * time).collect(),
         pause: None,
-        external: run.moves.first()?.movement.external?,
+        external: first.external?,
         values: Vec::new(),
         follows: 0,
         puts_off: None,

@@ -4,6 +4,7 @@ use super::files::OutputFile;
 use super::padding::Padding;
 use super::signals::SignalShift;
 use super::uncertainty::Uncertainty;
+use super::whole_cycle::WholeCycle;
 use crate::rapid::text::Span;
 use crate::retime::energy::Account;
 use crate::retime::motion::Simulation;
@@ -161,6 +162,8 @@ pub struct Retrofit {
     pub padding: Option<Padding>,
     /// Retrofit.
     pub optimized: Figures,
+    /// Both cycles with the rest of the takt.
+    pub whole_cycle: WholeCycle,
     /// Further saving by settings of the controller, J.
     pub potential_j: f64,
     /// In the order of the source.

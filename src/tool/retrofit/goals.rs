@@ -3,14 +3,14 @@
 use rayon::prelude::*;
 
 use super::candidate::Candidate;
-use super::cycle_time::cycle;
+use super::cycle_time::{awaits_stated_input, cycle};
 use super::error::RetrofitError;
 use super::job::Original;
 use super::planning::Planning;
 use super::settings::{Budget, Objective};
 use super::simulated::TIME_TOLERANCE;
-use crate::retime::motion::timeline::{Event, WaitBasis, What};
-use crate::retime::optimize::cycle::{Cycle, EnergyCurve};
+use crate::retime::optimize::convex_curve::EnergyCurve;
+use crate::retime::optimize::cycle::Cycle;
 use crate::retime::optimize::energy_curve::Curve;
 use crate::retime::optimize::reason::Reason;
 use crate::retime::optimize::retime::{Goal, Retiming, SLOWEST, Task, fastest};
@@ -55,11 +55,7 @@ pub(super) fn goals(
     let (takt, bounds): (f64, Vec<(f64, f64)>) = match settings.budget {
         Budget::Factor(x) => return Ok(each(&|task| Goal::Exactly(x * before(task)))),
         Budget::AsBefore => {
-            let is_awaited = |event: &Event| match &event.what {
-                What::Wait(record) => record.basis == WaitBasis::Input && event.duration > 0.0,
-                _ => false,
-            };
-            if !simulation.events.iter().any(is_awaited) {
+            if !awaits_stated_input(simulation) {
                 return Ok(each(&|task| Goal::Within(before(task))));
             }
             // No run becomes faster to give time to others: if the guard of a fast stream fails,

@@ -18,7 +18,7 @@ use crate::rapid::syntax::tokenize;
 use crate::rapid::text::Span;
 use crate::retime::motion::timeline::Run;
 use crate::retime::optimize::reason::Reason;
-use crate::tool::emit::Parameter;
+use crate::tool::emit::{Now, Parameter};
 
 /// The arguments of all movements and waits of a program.
 pub(super) struct Guards<'p> {
@@ -29,6 +29,8 @@ pub(super) struct Guards<'p> {
     meanwhile: BTreeSet<DataId>,
     /// Data that interrupt routines may read at any time.
     read_by_interrupts: BTreeSet<DataId>,
+    /// Data that other tasks may read; `None`: all global `PERS` data.
+    read_elsewhere: Option<BTreeSet<String>>,
     /// Whether movements with inline targets may be replaced.
     inline_targets: bool,
     known: RefCell<BTreeMap<Span, Reads>>,
@@ -68,7 +70,17 @@ impl<'p> Guards<'p> {
             }
         }
         let known = RefCell::default();
-        Guards { program, files, arguments, meanwhile, read_by_interrupts, inline_targets, known }
+        let read_elsewhere = settings.read_elsewhere.clone();
+        Guards {
+            program,
+            files,
+            arguments,
+            meanwhile,
+            read_by_interrupts,
+            read_elsewhere,
+            inline_targets,
+            known,
+        }
     }
 
     /// Why no guard can ensure that a run moves as in the original.
@@ -93,11 +105,16 @@ impl<'p> Guards<'p> {
     }
 
     /// Whether an interrupt routine or another task may read or write these data at any time.
-    /// Other tasks may read all `PERS` data that are global.
     pub(super) fn is_seen_meanwhile(&self, id: DataId) -> bool {
+        let is_seen = self.meanwhile.contains(&id) || self.read_by_interrupts.contains(&id);
+        is_seen || self.is_read_elsewhere(id)
+    }
+
+    /// Whether another task may read these data at any time.
+    pub(super) fn is_read_elsewhere(&self, id: DataId) -> bool {
         let data = self.program.data(id);
         let is_shared = data.kind == DataKind::Pers && data.scope == Scope::Global;
-        is_shared || self.meanwhile.contains(&id) || self.read_by_interrupts.contains(&id)
+        is_shared && self.read_elsewhere.as_ref().is_none_or(|names| names.contains(&data.name.key))
     }
 
     /// Whether the value of an expression in a routine is the same before and during a movement, and
@@ -159,7 +176,7 @@ impl<'p> Guards<'p> {
             let text = one_line(self.files, argument.span);
             let parameter = Parameter {
                 label: text.clone(),
-                text: Some(text),
+                now: Now::Argument(text),
                 type_name: argument.type_name,
                 is_computed: is_computed(expr),
             };

@@ -51,8 +51,15 @@ pub(super) fn marked_sites(
             let What::Run(run) = &simulation.events[*event].what else { return None };
             Some((run, *event))
         });
-        // Only streams have a guard: with other forms, variable movements stay.
-        let varies = |run: &Run| run.moves.iter().find_map(|record| not_constant(&record.movement));
+        // Only streams have a guard: with other forms, variable movements stay, and those under a
+        // setting that their new speeds would have to know.
+        let varies = |run: &Run| {
+            run.moves.iter().find_map(|record| {
+                let is_scaled = record.movement.settings.shares() != [1.0; 3];
+                let setting = is_scaled.then(|| Reason::Setting("VelSet or AccSet".to_owned()));
+                setting.or_else(|| not_constant(&record.movement))
+            })
+        };
         let unguarded = runs.clone().next().filter(|_| form != Form::Streams);
         variant.reason = std::mem::take(&mut variant.reason)
             .or_else(|| whole.clone())

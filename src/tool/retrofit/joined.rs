@@ -4,6 +4,9 @@
 //! off. That is right only where the program certainly goes on without a stop, an output or another
 //! effect; where another statement may come first, the movements are made up for before it.
 
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet};
+
 use super::files::file_and_line;
 use super::guards::Guards;
 use crate::rapid::builtins::instruction;
@@ -27,7 +30,12 @@ pub(super) fn mark_pieces(
     if sites.iter().all(|site| site.pieces.len() == 1) {
         return;
     }
-    let between = Between { program, guards, error_handler: error_handler.is_some() };
+    let between = Between {
+        program,
+        guards,
+        error_handler: error_handler.is_some(),
+        shared: RefCell::default(),
+    };
     let upcoming = Upcoming::new(program, entry);
     let place = |span: Span| file_and_line(guards.files(), span);
     for site in sites.iter_mut().filter(|site| site.pieces.len() > 1) {
@@ -40,10 +48,7 @@ pub(super) fn mark_pieces(
             let after = upcoming.after(pair[0].last, &|id, step| between.quiet(id, step));
             match after {
                 Ok(after) if after.contains(&pair[1].first) => Ok(after),
-                Ok(after) => {
-                    let places: Vec<String> = after.into_iter().take(NAMED).map(place).collect();
-                    Err(Reason::LogicBetween(format!("{} runs", places.join(" or "))))
-                }
+                Ok(after) => Err(Reason::LogicBetween(between.named(after))),
                 Err(Unknown::Decision(span)) => Err(Reason::Scattered(format!(
                     ", and {} decides by what may change while the robot moves",
                     place(span)
@@ -76,9 +81,27 @@ struct Between<'a, 'p> {
     /// Whether the program handles errors of arguments: an error would then come before the
     /// movements that are put off.
     error_handler: bool,
+    /// The data of statements that write what another task may read.
+    shared: RefCell<BTreeMap<Span, String>>,
 }
 
 impl Between<'_, '_> {
+    /// The statements of which one runs between two pieces.
+    fn named(&self, statements: BTreeSet<Span>) -> String {
+        let shared = self.shared.borrow();
+        let place = |span: Span| {
+            let place = file_and_line(self.guards.files(), span);
+            match shared.get(&span) {
+                Some(data) => {
+                    format!("{place} (writes {data}; --only-task: no other task reads it)")
+                }
+                None => place,
+            }
+        };
+        let places: Vec<String> = statements.into_iter().take(NAMED).map(place).collect();
+        format!("{} runs", places.join(" or "))
+    }
+
     /// Whether nobody can tell if a step runs before or during a movement.
     fn quiet(&self, routine: RoutineId, step: Step<'_>) -> Quiet {
         let is_quiet = match step {
@@ -91,7 +114,7 @@ impl Between<'_, '_> {
 
     fn statement(&self, routine: RoutineId, stmt: &Stmt) -> bool {
         let does_no_more = match &stmt.kind {
-            StmtKind::Assign { target, .. } => self.is_own(routine, target),
+            StmtKind::Assign { target, .. } => self.is_own(routine, stmt.span, target),
             StmtKind::Call(call) => match &call.callee {
                 Callee::Late(_) => false,
                 Callee::Name(name) => match self.program.resolve(routine.module, &name.key) {
@@ -99,7 +122,7 @@ impl Between<'_, '_> {
                     Some(_) => false,
                     None => instruction(&name.key).is_some_and(|it| {
                         let counted = call.args.iter().find_map(Arg::positional);
-                        it.counts() && counted.is_some_and(|to| self.is_own(routine, to))
+                        it.counts() && counted.is_some_and(|to| self.is_own(routine, stmt.span, to))
                     }),
                 },
             },
@@ -118,15 +141,21 @@ impl Between<'_, '_> {
         !may_raise && self.guards.is_steady(routine, expr)
     }
 
-    /// Whether nothing that runs at the same time can see this data.
-    fn is_own(&self, routine: RoutineId, target: &Expr) -> bool {
+    /// Whether nothing that runs at the same time can see what a statement writes.
+    fn is_own(&self, routine: RoutineId, statement: Span, target: &Expr) -> bool {
         let Some(name) = target.base() else { return true };
         let mut params = self.program.routine(routine).params.iter();
         if let Some(param) = params.find(|param| param.name.key == name.key) {
             return param.mode == ParamMode::In;
         }
         match self.program.resolve(routine.module, &name.key) {
-            Some(Symbol::Data(id)) => !self.guards.is_seen_meanwhile(id),
+            Some(Symbol::Data(id)) => {
+                if self.guards.is_read_elsewhere(id) {
+                    let data = self.program.data(id).name.text.clone();
+                    self.shared.borrow_mut().insert(statement, data);
+                }
+                !self.guards.is_seen_meanwhile(id)
+            }
             _ => true,
         }
     }

@@ -6,6 +6,7 @@
 mod brakes;
 mod candidate;
 mod cell;
+mod cycle_curve;
 mod cycle_time;
 mod elsewhere;
 mod emission_context;
@@ -51,11 +52,12 @@ mod uncertainty;
 mod verify;
 mod verify_speeds;
 mod verify_streams;
+mod whole_cycle;
 mod without;
 
 pub use brakes::BRAKE_NOTE;
 pub use cell::Cell;
-pub use elsewhere::written_in;
+pub use elsewhere::{declared_in, written_in};
 pub use error::RetrofitError;
 pub use figures::{Figures, LowerLimits, Retrofit, Segment, SegmentKind, Verification};
 pub(in crate::tool) use files::file_and_line;
@@ -70,4 +72,5 @@ pub(in crate::tool) use simulated::Simulated;
 pub use uncertainty::Uncertainty;
 pub(in crate::tool) use verify::{parses, run_again};
 pub(in crate::tool) use verify_speeds::largest_share;
+pub use whole_cycle::{CyclePoint, Rest, TaktBasis, TaktEnergy, WholeCycle};
 pub use without::{is_streams, prefix, without_streams};

@@ -8,6 +8,7 @@ use super::job::Original;
 use super::padding::Padding;
 use super::settings::{Budget, Objective, Settings};
 use super::simulated::Simulated;
+use super::whole_cycle::WholeCycle;
 use crate::arm::robot::Model;
 use crate::retime::energy::account::at_rest;
 use crate::retime::optimize::reason::Reason;
@@ -24,9 +25,10 @@ pub(super) fn notes(
     settings: &Settings,
     segments: &[Segment],
     (original, optimized, padding): (&Figures, &Figures, Option<&Padding>),
+    whole: &WholeCycle,
 ) -> Vec<String> {
     let mut notes: Vec<String> = unchanged(segments).into_iter().collect();
-    notes.extend(padding.map(|padding| padded(original, padding)));
+    notes.extend(padding.map(|padding| padded(original, padding, whole)));
     if settings.objective == Objective::Time {
         return notes;
     }
@@ -36,6 +38,7 @@ pub(super) fn notes(
     }
     if let Budget::Takt(takt) = settings.budget
         && takt - optimized.cycle_s > UNUSED * takt
+        && whole.optimized.rest.state.is_none()
     {
         notes.push(format!(
             "the cycle takes {:.3} s of the takt of {takt} s: slower travel would save nothing \
@@ -67,12 +70,11 @@ pub(super) fn notes(
     if let Budget::Takt(takt) = settings.budget
         && takt >= original.cycle_s
     {
-        let rest = |cycle_s: f64| resting_j(model, &program.cycle, takt - cycle_s);
         let _ = write!(
             note,
-            "; with the rest of the takt waited for, {:.1} J instead of {:.1} J",
-            optimized.energy_j + rest(optimized.cycle_s),
-            original.energy_j + rest(original.cycle_s),
+            "; with the rest of the takt, {:.1} J instead of {:.1} J",
+            whole.optimized.energy_j(),
+            whole.original.energy_j(),
         );
     }
     notes.push(note);
@@ -102,14 +104,22 @@ pub(super) fn off_path(settings: &Settings, farthest_m: f64) -> Option<String> {
 }
 
 /// The note on the wait that is added to the original.
-fn padded(original: &Figures, padding: &Padding) -> String {
+fn padded(original: &Figures, padding: &Padding, whole: &WholeCycle) -> String {
+    let rests = [&whole.original.rest, &whole.optimized.rest];
+    let spent = if rests.iter().any(|rest| rest.state.is_some()) {
+        format!("of its rest of the takt, which takes {:.1} J more", padding.energy.energy_j())
+    } else {
+        format!(
+            "in which the robot waits where its cycle ends ({:.1} J of base load, holding and open \
+             brakes)",
+            padding.energy.energy_j()
+        )
+    };
     format!(
-        "the original is padded: by itself it takes {:.3} s, and it is counted with {:.3} s more in \
-         which the robot waits where its cycle ends ({:.1} J of base load, holding and open brakes), \
-         so that both sides take {:.3} s",
+        "the original is padded: by itself it takes {:.3} s, and it is counted with {:.3} s more \
+         {spent}, so that both sides take {:.3} s",
         original.cycle_s - padding.duration_s,
         padding.duration_s,
-        padding.energy.energy_j(),
         original.cycle_s,
     )
 }

@@ -36,7 +36,7 @@ pub(super) fn recorded(program: &Program, files: &[Source], names: &Names) -> Re
         }
     }
     let charsets: Vec<Charset> = files.iter().map(|file| charset(&file.file.bytes)).collect();
-    let mut recorded = Recorded { switches, load: false, edits: Vec::new() };
+    let mut recorded = Recorded { switches, load: false, compared: Vec::new(), edits: Vec::new() };
     for (place, changes) in &found {
         let texts = changes.iter().filter_map(|change| match change {
             Change::Load(load) => {

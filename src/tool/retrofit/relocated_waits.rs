@@ -71,7 +71,9 @@ pub(super) fn relocated_waits(job: &Job<'_>, candidates: &[Candidate]) -> Vec<Re
             })
         });
         let external = first.record.wait.external.is_some();
-        if !alike || external || !stands_alone(original.files, span) {
+        let last = &first.leading.moves.last()?.movement;
+        let is_scaled = last.settings.shares() != [1.0; 3];
+        if !alike || external || is_scaled || !stands_alone(original.files, span) {
             return None;
         }
         let tool = &first.leading.legs.last()?.tool;

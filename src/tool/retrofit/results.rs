@@ -1,5 +1,6 @@
 //! Assembles the result of a retrofit.
 
+use super::cycle_curve::cycle_curve;
 use super::figures::{Figures, LowerLimits, Retrofit, SegmentKind};
 use super::job::Job;
 use super::notes;
@@ -10,10 +11,18 @@ use super::settings::Form;
 use super::signals::signals;
 use super::simulated::Simulated;
 use super::uncertainty::uncertainty;
+use super::whole_cycle::{self, whole_cycle};
 use crate::retime::optimize::idle::dwells;
 
 /// The result of a job. `leaves_path`: whether streams leave the programmed path.
 pub(super) fn results(job: Job<'_>, rewritten: Rewritten, leaves_path: bool) -> Retrofit {
+    let mut whole =
+        whole_cycle(job.model, &job.settings, &job.original.cycle, &rewritten.simulated);
+    if job.settings.pareto > 0 && job.settings.form == Form::Streams && !leaves_path {
+        let Rewritten { candidates, simulated, .. } = &rewritten;
+        let takt = whole.optimized.time_s;
+        whole.curve = cycle_curve(&job, candidates, simulated, takt, job.settings.pareto);
+    }
     let Job { original, model, settings, robots, mean } = job;
     let Rewritten { candidates, waits, respeeded, outputs, simulated, .. } = rewritten;
     let dwells = dwells(model, &original.cycle.simulation);
@@ -30,7 +39,7 @@ pub(super) fn results(job: Job<'_>, rewritten: Rewritten, leaves_path: bool) -> 
         }
     }
     let optimized = figures(&simulated);
-    let padding = padding(model, &original.cycle, optimized.cycle_s);
+    let padding = padding(model, &original.cycle, optimized.cycle_s, &whole);
     let uncertainty = robots
         .map(|robots| uncertainty(model, &robots, (&original.cycle, padding.as_ref()), &simulated));
     let before = figures(&original.cycle).padded(padding.as_ref());
@@ -41,6 +50,7 @@ pub(super) fn results(job: Job<'_>, rewritten: Rewritten, leaves_path: bool) -> 
         &settings,
         &segments,
         (&before, &optimized, padding.as_ref()),
+        &whole,
     );
     if settings.form != Form::Speeds {
         // The padded original is at least as long as the retrofit.
@@ -54,8 +64,10 @@ pub(super) fn results(job: Job<'_>, rewritten: Rewritten, leaves_path: bool) -> 
             notes.extend(notes::off_path(&settings, rewritten.verification.worst.deviation_m));
         }
     }
+    notes.extend(whole_cycle::notes(model, &settings, &whole, &original.cycle));
     Retrofit {
         original: before,
+        whole_cycle: whole,
         padding,
         optimized,
         potential_j: dwells.iter().map(|dwell| dwell.potential_j).fold(0.0, |a, b| a + b),

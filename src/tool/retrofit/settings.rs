@@ -7,6 +7,7 @@ use crate::retime::motion::{Options, Simulation};
 use crate::retime::optimize::allowed::Loads;
 use crate::retime::optimize::cost::Cost;
 use crate::retime::optimize::freedom::Freedom;
+use crate::retime::optimize::resting::IdleState;
 use crate::tool::emit::Layout;
 
 /// The quantity to minimise.
@@ -54,6 +55,8 @@ pub struct Settings {
     pub objective: Objective,
     /// The time budget.
     pub budget: Budget,
+    /// Idle states of the controller for the rest of the takt.
+    pub idle: Vec<IdleState>,
     /// Minimum time between two points of a stream, s.
     pub spacing_s: f64,
     /// The same if the polygon of the points would otherwise be too far from the path, s.
@@ -74,10 +77,13 @@ pub struct Settings {
     /// Whether movements with inline targets may become streams: `ModPos` would change such a
     /// target only in the original branch of the guard.
     pub inline_targets: bool,
-    /// Number of points of each segment's energy-time curve; 0 for no curve.
+    /// Number of points of the energy-time curves of the cycle and of each segment; 0 for no curve.
     pub pareto: usize,
     /// Lower-case names of `PERS` data that other tasks of the controller may write.
     pub written_elsewhere: BTreeSet<String>,
+    /// Lower-case names of `PERS` data that other tasks of the controller may read. `None`: not
+    /// known, so all that are global may be.
+    pub read_elsewhere: Option<BTreeSet<String>>,
 }
 
 /// Time spacing of the points that a controller plans, s.
@@ -93,6 +99,7 @@ impl Default for Settings {
             options: Options::default(),
             objective: Objective::default(),
             budget: Budget::default(),
+            idle: Vec::new(),
             spacing_s: SPACING_S,
             closest_s: CLOSEST_S,
             freedom: Freedom::default(),
@@ -104,6 +111,7 @@ impl Default for Settings {
             inline_targets: false,
             pareto: 0,
             written_elsewhere: BTreeSet::new(),
+            read_elsewhere: None,
         }
     }
 }

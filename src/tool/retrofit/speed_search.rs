@@ -10,7 +10,7 @@ use super::simulated::{Simulated, TIME_TOLERANCE};
 use super::speed_slots::Slot;
 use crate::retime::energy::EnergyParts;
 use crate::retime::motion::simulate;
-use crate::retime::optimize::cycle::EnergyCurve;
+use crate::retime::optimize::convex_curve::EnergyCurve;
 
 /// Grid of factors on the programmed speeds.
 const FACTORS: [f64; 18] =

@@ -79,7 +79,7 @@ pub(super) fn uncertainty(
 ) -> Uncertainty {
     let mut sums = moments(model, &before.simulation);
     if let (Some(padding), Some((load, q))) = (padding, before.end()) {
-        sums.rest(model, load, q, padding.duration_s);
+        sums.rest(model, load, q, padding.standing_s);
     }
     let padding = padding.map_or_else(EnergyParts::default, |padding| padding.energy);
     let a = robots.changes(model, &sums);

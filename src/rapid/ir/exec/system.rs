@@ -8,8 +8,6 @@ use crate::rapid::ir::hir::{Arg, ArgKind, Expr};
 use crate::rapid::ir::value::{Datum, Dependence, Origin, Value};
 use crate::rapid::text::Span;
 
-/// TCP speed limit in `C_MOTSET` before the first `VelSet`, mm/s.
-const USUAL_SPEED: f64 = 5000.0;
 /// RAPID's value of an axis that does not exist.
 pub(super) const NO_AXIS: f64 = 9e9;
 /// Value of a limit that is off.
@@ -33,11 +31,7 @@ impl Executor<'_> {
     fn motion_settings(&self, span: Span) -> Datum {
         let settings = &self.settings;
         let percent = |share: f64| (100.0 * share).round();
-        let speed = if settings.speed_max.is_finite() {
-            (1e3 * settings.speed_max * 1e6).round() / 1e6
-        } else {
-            USUAL_SPEED
-        };
+        let [override_percent, max, acceleration, ramp] = settings.limits();
         let area = settings.sing_area.as_deref().unwrap_or_default().to_lowercase();
         let sing = ["\\wrist", "\\lockaxis4", "\\arm", "\\base"];
         let limit = |limit: f64| {
@@ -48,10 +42,9 @@ impl Executor<'_> {
         let on = Datum::Bool(true);
         let conf = [Datum::Bool(settings.conf_joint), Datum::Bool(settings.conf_linear)];
         let zeros = [0.0; 3].map(Datum::Num);
-        let acc = [settings.acceleration, settings.ramp, settings.fine_point_ramp];
         let mut all = vec![
-            Datum::nums([percent(settings.speed_override), speed]),
-            Datum::nums(acc.map(percent)),
+            Datum::nums([override_percent, max]),
+            Datum::nums([acceleration, ramp, percent(settings.fine_point_ramp)]),
             Datum::List(sing.map(|kind| Datum::Bool(area.ends_with(kind))).to_vec()),
             Datum::List(conf.into_iter().chain(zeros).collect()),
             settings.path_resolution.map_or_else(

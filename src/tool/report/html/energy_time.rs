@@ -77,7 +77,7 @@ pub(super) fn energy_time(retrofit: &Retrofit, places: Places<'_>) -> Option<Str
 const MARGIN: f64 = 0.05;
 
 /// A scale that need not contain 0: the arrows are short relative to the values.
-fn scale(values: impl Iterator<Item = f64>, count: usize) -> Scale {
+pub(super) fn scale(values: impl Iterator<Item = f64>, count: usize) -> Scale {
     let (low, high) =
         values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
     let margin = MARGIN * (high - low);

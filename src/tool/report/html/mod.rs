@@ -1,6 +1,7 @@
 //! Results as one self-contained HTML page: style sheet and plots inline, no scripts, no external
 //! resources.
 
+mod cycle_curve;
 mod diagnose;
 mod energy_time;
 mod figure;
@@ -33,6 +34,7 @@ use page::render;
 
 use super::place::Places;
 use super::plausible::saving;
+use super::whole_cycle;
 use crate::arm::robot::Model;
 use crate::rapid::text::SourceFile;
 use crate::tool::retrofit::{Retrofit, Source};
@@ -63,6 +65,8 @@ pub fn optimize_report(
     context.insert("summary", &summary::summary(retrofit));
     context.insert("segments", &segments::segments(retrofit, places));
     context.insert("energy_time", &energy_time::energy_time(retrofit, places));
+    context.insert("cycle_curve", &cycle_curve::cycle_curve(&retrofit.whole_cycle));
+    context.insert("whole_cycle", &whole_cycle::text(&retrofit.whole_cycle));
     context.insert("movements", &movements::movements(retrofit, model, places));
     context.insert("dwells", &standstill::standstill(retrofit, model, places));
     context.insert("joints", &(1..=model.dof).collect::<Vec<usize>>());
