@@ -89,12 +89,13 @@ const WINGS: [Wing; 7] = [
             room("lint", &["rapid", "arm", "path", "motion", "energy"]),
             room("place", &["rapid", "arm", "retime", "retrofit", "lint"]),
             room("suggest", &["rapid", "arm", "retime", "retrofit", "lint"]),
+            room("cell", &["rapid", "arm", "retime", "log", "emit", "retrofit"]),
             room("config", &["lint"]),
             room(
                 "report",
                 &[
                     "rapid", "arm", "retime", "learn", "gap", "examine", "retrofit", "lint",
-                    "place", "suggest",
+                    "place", "suggest", "cell",
                 ],
             ),
             room("lsp", &["rapid", "arm", "retime", "lint"]),
@@ -102,7 +103,7 @@ const WINGS: [Wing; 7] = [
                 "cli",
                 &[
                     "rapid", "arm", "retime", "learn", "gap", "examine", "emit", "retrofit",
-                    "generate", "lint", "place", "suggest", "config", "report", "lsp",
+                    "generate", "lint", "place", "suggest", "cell", "config", "report", "lsp",
                 ],
             ),
         ],
