@@ -1,5 +1,10 @@
 //! The loop in the cell: what a recorder saw, which waits are slack, and what a retrofit saved.
 //!
+//! - [`instrument`]: puts a recorder into a program, and takes it out;
 //! - [`events`]: the log that a recorder writes, and its cycles.
 
 pub mod events;
+mod hash;
+pub mod instrument;
+
+pub use hash::program_hash;

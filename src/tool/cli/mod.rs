@@ -11,6 +11,7 @@ mod excite;
 mod generate;
 mod identify;
 mod input;
+mod instrument;
 mod keep_outs;
 mod lint;
 mod listing;
@@ -60,6 +61,7 @@ enum Command {
     Generate(generate::GenerateArgs),
     Place(Box<place::PlaceArgs>),
     Standstill(standstill::StandstillArgs),
+    Instrument(Box<instrument::InstrumentArgs>),
     Excite(Box<excite::ExciteArgs>),
     Streamtest(streamtest::StreamtestArgs),
     Identify(Box<identify::IdentifyArgs>),
@@ -85,6 +87,7 @@ pub fn command_line() -> ExitCode {
         Command::Generate(args) => generate::run(&args),
         Command::Place(args) => place::run(&args),
         Command::Standstill(args) => standstill::run(&args),
+        Command::Instrument(args) => instrument::run(&args),
         Command::Excite(args) => excite::run(&args),
         Command::Streamtest(args) => streamtest::run(&args),
         Command::Identify(args) => identify::run(&args),

@@ -261,7 +261,7 @@ fn optimize_job(
     let quiet = args.program.cell.quiet;
     // The folder of a single task does not include the controller's module list.
     let paths = args.program.cell.paths.as_slice();
-    let backup = whole_backup(paths, job);
+    let backup = whole_backup(paths, &job.input);
     if let (Some(folder), None) = (&args.out, backup) {
         refuse_nested_output(folder, paths)?;
     }
@@ -283,9 +283,9 @@ fn optimize_job(
             );
         }
         job.streams.restore_stated_data(&mut result);
-        listing::add(&mut result, &job.input, &job.files);
+        result.notes.extend(listing::add(&mut result.outputs, &job.input, &job.files));
         if lists {
-            backinfo::add(&mut result, &job.input);
+            result.notes.extend(backinfo::add(&mut result.outputs, &job.input));
         }
         result
     };
@@ -294,7 +294,7 @@ fn optimize_job(
     let places = Places::new(&sources);
     let mut written = Vec::new();
     if let Some(folder) = &args.out {
-        written.extend(write_folder(folder, original, &result.outputs, backup)?);
+        written.extend(write_folder(folder, (&original.files, &original.streams.modules), &result.outputs, backup)?);
     }
     if args.in_place {
         written.extend(write_in_place(paths, original, &result)?);
@@ -352,7 +352,7 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
     if args.dwell_pose.is_some() && args.emit != EmitArg::Absj {
         bail!("--dwell-pose needs streams: leave out --emit, or give --emit absj");
     }
-    let has_all_tasks = args.only_task || whole_backup(&args.program.cell.paths, job).is_some();
+    let has_all_tasks = args.only_task || whole_backup(&args.program.cell.paths, &job.input).is_some();
     Ok(Settings {
         entry: job.entry.clone(),
         options: job.options.clone(),

@@ -4,6 +4,7 @@ pub mod calibrate;
 pub mod diagnose;
 pub mod html;
 pub mod identify;
+pub mod instrument;
 pub mod json;
 pub mod lint;
 mod mark;
