@@ -1,10 +1,12 @@
 //! The loop in the cell: what a recorder saw, which waits are slack, and what a retrofit saved.
 //!
 //! - [`instrument`]: puts a recorder into a program, and takes it out;
+//! - [`slack`]: how much later the robot may come to its waits;
 //! - [`events`]: the log that a recorder writes, and its cycles.
 
 pub mod events;
 mod hash;
 pub mod instrument;
+pub mod slack;
 
 pub use hash::program_hash;

@@ -30,6 +30,7 @@ mod robots;
 mod rule;
 mod signals;
 mod simulate;
+mod slack;
 mod standstill;
 mod streams;
 mod streamtest;

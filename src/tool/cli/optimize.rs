@@ -14,12 +14,13 @@ use super::keep_outs::keep_outs;
 use super::program_output::{
     current_bytes, refuse_nested_output, whole_backup, write_folder, write_in_place,
 };
-use super::{backinfo, input, listing, output, streams, suggest, undo};
+use super::{backinfo, input, listing, output, slack, streams, suggest, undo};
 use crate::rapid::text::charset;
 use crate::retime::optimize::cost::Cost;
 use crate::retime::optimize::freedom::{Bound, Freedom};
 use crate::retime::optimize::resting::IdleState;
 use crate::retime::optimize::retime::SLOWEST;
+use crate::tool::cell::slack::Planned;
 use crate::tool::config::{Config, Idle};
 use crate::tool::emit::Layout;
 use crate::tool::report::place::Places;
@@ -151,6 +152,15 @@ pub(super) struct OptimizeArgs {
     #[arg(long, value_name = "N,…|all")]
     apply: Option<String>,
 
+    /// Use up the slack of recorded waits (joulepath waits), between the event from which the machine's
+    /// time counts and the wait.
+    #[arg(long, value_name = "waits.toml")]
+    waits: Option<PathBuf>,
+
+    /// Share of cycles that may become longer by that.
+    #[arg(long, value_name = "SHARE", requires = "waits", default_value = slack::RISK)]
+    risk: String,
+
     /// Exit with 1 if some movement was refused.
     #[arg(long)]
     strict: bool,
@@ -219,19 +229,30 @@ pub(super) fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
     if args.undo {
         return undo_in_place(args);
     }
-    let job = common::prepare(&args.program)?;
+    let mut job = common::prepare(&args.program)?;
+    let slack = args.waits.as_ref().map(|path| slack::use_waits(&mut job, path, &args.risk));
+    let slack = slack.transpose()?;
     if args.suggest {
         return suggest::list(&args.program, &job);
     }
-    match &args.apply {
-        None => optimize_job(args, &job, &job, None),
-        Some(numbers) => {
-            let applied = suggest::apply(&args.program, &job, numbers)?;
-            let files = applied.files.clone();
-            let changed = Job { files, ..common::prepare(&args.program)? };
-            optimize_job(args, &changed, &job, Some(&applied))
+    let numbers = args.apply.as_ref();
+    let applied = numbers.map(|numbers| suggest::apply(&args.program, &job, numbers)).transpose()?;
+    let extras = Extras { applied: applied.as_ref(), slack: slack.as_ref() };
+    match &applied {
+        None => optimize_job(args, &job, &job, extras),
+        Some(applied) => {
+            let (files, options) = (applied.files.clone(), job.options.clone());
+            let changed = Job { files, options, ..common::prepare(&args.program)? };
+            optimize_job(args, &changed, &job, extras)
         }
     }
+}
+
+/// What is done beside the retrofit.
+#[derive(Clone, Copy, Default)]
+struct Extras<'a> {
+    applied: Option<&'a Applied>,
+    slack: Option<&'a Planned>,
 }
 
 /// Optimises a program that already has streams and replaces these.
@@ -239,14 +260,14 @@ pub(super) fn refresh(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
     if args.undo {
         bail!("refresh cannot undo changes; use joulepath optimize --undo");
     }
-    if args.suggest || args.apply.is_some() {
-        bail!("refresh changes streams alone; use joulepath optimize --suggest, or --apply");
+    if args.suggest || args.apply.is_some() || args.waits.is_some() {
+        bail!("refresh changes streams alone; use joulepath optimize --suggest, --apply or --waits");
     }
     let mut input = input::read(&args.program.cell.paths)?;
     let streams = streams::remove_streams(&mut input)?;
     let job = common::prepare_read(&args.program, input)?;
     let job = Job { streams, ..job };
-    optimize_job(args, &job, &job, None)
+    optimize_job(args, &job, &job, Extras::default())
 }
 
 /// Retrofits a program. `original`: the program as the files have it, before suggestions.
@@ -254,7 +275,7 @@ fn optimize_job(
     args: &OptimizeArgs,
     job: &Job,
     original: &Job,
-    applied: Option<&Applied>,
+    extras: Extras<'_>,
 ) -> anyhow::Result<ExitCode> {
     let settings = settings(args, job)?;
     output::refuse_inputs(&[("--report", args.report.as_ref())], job.read_paths())?;
@@ -275,6 +296,7 @@ fn optimize_job(
         bar.finish_and_clear();
         let mut result = result?;
         result.notes.extend(job.unused_inputs(&result.before.0));
+        result.notes.extend(extras.slack.into_iter().flat_map(|it| it.notes.clone()));
         if job.files.iter().any(|source| is_streams(&source.file.bytes)) {
             result.notes.push(
                 "the program has streams already, which stay as they are: joulepath refresh makes \
@@ -313,8 +335,11 @@ fn optimize_job(
         || {
             let mut value =
                 report::json::retrofit(&job.model, &job.entry, places, &result, &written);
-            if let Some(applied) = applied {
+            if let Some(applied) = extras.applied {
                 value["applied"] = report::suggestions::applied_json(applied);
+            }
+            if let Some(planned) = extras.slack {
+                value["waits"] = report::slack::json(&job.model, planned, &result);
             }
             value
         },
@@ -322,7 +347,8 @@ fn optimize_job(
             if args.diff || job.is_refreshed() {
                 diff(original, &result)
             } else {
-                report::text::retrofit(&job.model, places, &result)
+                let slack = extras.slack.map(|it| report::slack::text(&job.model, it, &result));
+                report::text::retrofit(&job.model, places, &result) + &slack.unwrap_or_default()
             }
         },
     )?;

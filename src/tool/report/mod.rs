@@ -12,6 +12,7 @@ pub mod place;
 pub mod placement;
 mod plausible;
 pub mod simulated;
+pub mod slack;
 pub mod standstill;
 pub mod suggestions;
 pub mod svg;
