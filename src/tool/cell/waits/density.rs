@@ -9,8 +9,10 @@ use std::f64::consts::PI;
 
 /// Share of times that are nothing like those around them.
 const RARE: f64 = 0.02;
-/// Least width of the kernel: what a controller's scan resolves, s.
+/// Least width of the kernel, s, and in steps of the clock: rounding of the robot's coming makes a wait
+/// shorter and the time before it longer, which must tell nothing.
 const LEAST_WIDTH_S: f64 = 0.005;
+const LEAST_STEPS: f64 = 2.0;
 /// Silverman's width for a normal law, and the quarter quantile of |x_i − x_j| over its deviation.
 const SILVERMAN: f64 = 1.06;
 const QUARTER: f64 = 0.4506;
@@ -43,12 +45,12 @@ impl Known {
 /// Width of the kernel for values that follow each other, of which `count` are seen at once, s.
 ///
 /// The quarter quantile of the differences is that of one population where there are two.
-pub(super) fn width(values: impl Iterator<Item = f64>, count: usize) -> f64 {
+pub(super) fn width(values: impl Iterator<Item = f64>, count: usize, step_s: f64) -> f64 {
     let values: Vec<f64> = values.collect();
     let differences = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     let quarter = super::spread::quantile(&super::spread::sorted(differences), 0.25);
     let deviation = if quarter.is_finite() { quarter / QUARTER } else { 0.0 };
-    (SILVERMAN * deviation * (count.max(2) as f64).powf(-0.2)).max(LEAST_WIDTH_S)
+    (SILVERMAN * deviation * (count.max(2) as f64).powf(-0.2)).max(LEAST_WIDTH_S).max(LEAST_STEPS * step_s)
 }
 
 /// How much later the times get per cycle: the median over pairs half the window apart. `times` are
@@ -67,7 +69,12 @@ pub(super) fn trend(times: &[(f64, Known)]) -> f64 {
 
 /// ln of the density of a known time, or of the probability that it is early enough.
 pub(super) fn log_density(x: Known, others: &mut [Known], width: f64, cycle_s: f64) -> f64 {
+    let is_bounded = others.iter().any(|of| matches!(of, Known::AtMost(_)));
     others.sort_by(|a, b| {
+        // Without bounds all masses are equal.
+        if !is_bounded {
+            return std::cmp::Ordering::Equal;
+        }
         let exact_first = |of: &Known| matches!(of, Known::AtMost(_));
         b.value().total_cmp(&a.value()).then(exact_first(a).cmp(&exact_first(b)))
     });
@@ -127,8 +134,8 @@ mod tests {
     #[test]
     fn the_width_is_that_of_one_of_two_populations() {
         let jitter = |i: usize| 0.1 * ((i as f64 * 12.9898).sin() * 43_758.545).fract();
-        let two = width((0..400).map(|i| jitter(i) + if i % 7 < 3 { 40.0 } else { 60.0 }), 40);
-        let one = width((0..400).map(jitter), 40);
+        let two = width((0..400).map(|i| jitter(i) + if i % 7 < 3 { 40.0 } else { 60.0 }), 40, 0.0);
+        let one = width((0..400).map(jitter), 40, 0.0);
         assert!(two < 3.0 * one, "{two} {one}");
     }
 }

@@ -34,6 +34,8 @@ pub(super) struct Evidence<'a> {
     by_way: Vec<usize>,
     /// Median time of a cycle, s.
     cycle_s: f64,
+    /// Step of the clock, s.
+    step_s: f64,
     /// Number of cycles with predicted visits.
     pub(super) cycles: usize,
 }
@@ -82,7 +84,7 @@ impl<'a> Evidence<'a> {
             cycles.insert(visits[*index].cycle);
         }
         let cycle_s = median(shift.cycles.iter().map(super::super::events::Cycle::duration));
-        Evidence { samples, others, by_way, cycle_s, cycles: cycles.len() }
+        Evidence { samples, others, by_way, cycle_s, step_s: shift.step_s, cycles: cycles.len() }
     }
 
     /// The machine answers the robot.
@@ -108,10 +110,12 @@ impl<'a> Evidence<'a> {
                 let from = (*from)?;
                 let travel = visit.came - from;
                 let r = |end: f64| Known::Exact(end - from - b * travel);
+                let ended = r(visit.came + visit.length);
+                let Known::Exact(at_most) = ended else { return None };
                 if !visit.at_once() {
-                    return Some([r(visit.came + visit.length); 2]);
+                    return Some([ended; 2]);
                 }
-                let at_most = Known::AtMost((1.0 - b) * travel);
+                let at_most = Known::AtMost(at_most);
                 let heard = visit.heard.filter(|heard| *heard > from && b < 1.0);
                 Some([heard.map_or(at_most, r), at_most])
             })
@@ -120,7 +124,7 @@ impl<'a> Evidence<'a> {
             Known::Exact(r) => Some(r),
             Known::AtMost(_) => None,
         });
-        let width = width(exact, 2 * REACH);
+        let width = width(exact, 2 * REACH, self.step_s);
         let mut near = Vec::new();
         (0..visits.len())
             .map(|index| {

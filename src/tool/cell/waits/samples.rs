@@ -135,7 +135,7 @@ fn awaited(all: &[Vec<Moment>], key: &Key, ended: &[(usize, &Visit, f64)]) -> Op
     votes.into_iter().max_by_key(|(_, count)| *count).map(|(kind, _)| kind.clone())
 }
 
-fn candidates(
+pub(super) fn candidates(
     shift: &Shift,
     all: &[Vec<Moment>],
     samples: &[Sample],
@@ -149,7 +149,12 @@ fn candidates(
         };
         let mut seen: BTreeSet<&Kind> = BTreeSet::new();
         let mut moved = false;
-        let earlier = || all[sample.cycle].iter().rev().filter(|moment| moment.t <= sample.came);
+        // A movement that starts when the robot comes is the next one.
+        let is_earlier = |moment: &&Moment| {
+            let starts = matches!(moment.kind, Kind::Start(_));
+            moment.t < sample.came || moment.t == sample.came && !starts
+        };
+        let earlier = || all[sample.cycle].iter().rev().filter(is_earlier);
         let cmd = earlier().next().map_or(0, |moment| moment.cmd);
         for moment in earlier() {
             let starts = matches!(moment.kind, Kind::Start(_));
@@ -168,10 +173,9 @@ fn candidates(
             }
         }
     }
-    let least = COVERAGE * samples.len() as f64;
     let usable = found.into_iter().filter_map(|(reference, times)| {
         let known: Vec<(&Moment, bool)> = times.iter().copied().flatten().collect();
-        (known.len() as f64 >= least).then(|| {
+        covers(samples, times.iter().map(Option::is_some)).then(|| {
             let standing = known.iter().filter(|(_, stands)| *stands).count();
             Candidate {
                 reference,
@@ -183,6 +187,19 @@ fn candidates(
         })
     });
     usable.collect()
+}
+
+/// Whether a reference is known for enough visits, and for enough of those in which the robot waited.
+fn covers(samples: &[Sample], known: impl Iterator<Item = bool>) -> bool {
+    let mut counts = [[0.0; 2]; 2];
+    for (sample, known) in samples.iter().zip(known) {
+        counts[usize::from(known)][usize::from(sample.at_once())] += 1.0;
+    }
+    let [[without_waited, without], [with_waited, with]] = counts;
+    let of_all = without_waited + without + with_waited + with;
+    with_waited + with >= COVERAGE * of_all
+        && with_waited >= COVERAGE * (with_waited + without_waited)
+        && with_waited > 0.0
 }
 
 fn most_frequent<'a>(places: impl Iterator<Item = &'a Place>) -> Option<Place> {
@@ -235,12 +252,12 @@ impl Samples {
         };
         let samples: Vec<Sample> =
             self.samples.iter().filter(|sample| sample.occurrence == occurrence).cloned().collect();
-        let least = COVERAGE * samples.len() as f64;
         let candidates = self.candidates.iter().filter_map(|of| {
             let times = kept(&of.times);
-            let known = times.iter().flatten().count();
-            (known as f64 >= least).then(|| Candidate { times, ..of.clone() })
+            let covers = covers(&samples, times.iter().map(Option::is_some));
+            covers.then(|| Candidate { times, ..of.clone() })
         });
-        Samples { candidates: candidates.collect(), samples, ..self.clone() }
+        let candidates = candidates.collect();
+        Samples { candidates, samples, ..self.clone() }
     }
 }

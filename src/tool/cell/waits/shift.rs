@@ -29,7 +29,14 @@ pub struct Shift {
     pub follows: Vec<bool>,
     /// For each session its start, s, as if each followed the one before.
     pub offsets: Vec<f64>,
+    /// Step of the recorder's clock, s.
+    pub step_s: f64,
 }
+
+/// Steps that clocks of controllers have, s, and how far a time may be from a multiple.
+const STEPS_S: [f64; 9] = [0.1, 0.05, 0.024, 0.02, 0.016, 0.012, 0.01, 0.008, 0.004];
+const ROUNDING_S: f64 = 0.0006;
+
 
 impl Shift {
     /// The cycles of logs that belong together.
@@ -61,6 +68,7 @@ impl Shift {
             let logs: Vec<&str> = logs.iter().map(|log| log.name.as_str()).collect();
             return Err(WaitsError::NoCycles { logs: logs.join(", ") });
         }
+        shift.step_s = step(logs);
         shift.ways = ways(&shift.cycles);
         let pairs = shift.cycles.windows(2);
         let follows = pairs.map(|pair| {
@@ -135,16 +143,34 @@ fn different(logs: &[Log]) -> Result<(), WaitsError> {
     Ok(())
 }
 
+/// The statements that a cycle came to: its waits and its stop points, each in order. Which of them came
+/// first is left out: a coarse clock does not tell.
+fn way(cycle: &Cycle) -> [Vec<&Place>; 2] {
+    let stops = cycle.events.iter().filter(|event| event.what == What::Arrive);
+    let stops = stops.filter_map(|event| event.place.as_ref());
+    [cycle.visits.iter().map(|visit| &visit.place).collect(), stops.collect()]
+}
+
 /// Numbers of the ways, by falling frequency.
 fn ways(cycles: &[Cycle]) -> Vec<usize> {
-    let all: Vec<Vec<&Place>> = cycles.iter().map(Cycle::way).collect();
-    let mut found: BTreeMap<&Vec<&Place>, (usize, usize)> = BTreeMap::new();
+    let all: Vec<[Vec<&Place>; 2]> = cycles.iter().map(way).collect();
+    let mut found: BTreeMap<&[Vec<&Place>; 2], (usize, usize)> = BTreeMap::new();
     for (index, way) in all.iter().enumerate() {
         found.entry(way).or_insert((0, index)).0 += 1;
     }
-    let mut order: Vec<(&Vec<&Place>, (usize, usize))> = found.into_iter().collect();
+    let mut order: Vec<_> = found.into_iter().collect();
     order.sort_by_key(|(_, (count, first))| (std::cmp::Reverse(*count), *first));
-    let numbers: BTreeMap<&Vec<&Place>, usize> =
+    let numbers: BTreeMap<&[Vec<&Place>; 2], usize> =
         order.into_iter().enumerate().map(|(number, (way, _))| (way, number)).collect();
     all.iter().map(|way| numbers[way]).collect()
+}
+
+/// The largest step of which all times are multiples.
+fn step(logs: &[Log]) -> f64 {
+    let times = || {
+        let sessions = logs.iter().flat_map(|log| &log.recording.sessions);
+        sessions.flat_map(|session| &session.events).map(|event| event.t)
+    };
+    let is_multiple = |step: f64| times().all(|t| (t - (t / step).round() * step).abs() < ROUNDING_S);
+    STEPS_S.into_iter().find(|step| is_multiple(*step)).unwrap_or(0.001)
 }

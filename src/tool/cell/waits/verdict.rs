@@ -35,6 +35,8 @@ const PARTLY: [f64; 3] = [0.25, 0.5, 0.75];
 const MIN_CYCLES: usize = 12;
 /// Share of visits that find everything ready from which on there is nothing to learn.
 const ALWAYS: f64 = 0.95;
+/// What is there already in a larger share of the visits does not answer the robot.
+const ANSWERS: f64 = 0.5;
 /// A wait for no signal that varies no more, s, lasts as long as the program says.
 const STATED_S: f64 = 0.02;
 
@@ -162,6 +164,8 @@ struct Comparison<'a> {
     evidence: &'a Evidence<'a>,
     answers: LogDensities,
     rivals: Vec<Rival<'a>>,
+    /// Share of the visits that find everything ready.
+    at_once: f64,
 }
 
 impl<'a> Comparison<'a> {
@@ -193,7 +197,9 @@ impl<'a> Comparison<'a> {
             Rival { index, candidate, slack, prior, advantage, over_process, partly }
         });
         let rivals: Vec<Rival<'a>> = rivals.collect();
-        Comparison { evidence, answers, rivals }
+        let ready = samples.samples.iter().filter(|sample| sample.at_once()).count();
+        let at_once = ready as f64 / samples.samples.len().max(1) as f64;
+        Comparison { evidence, answers, rivals, at_once }
     }
 
     fn verdict(&self) -> Verdict {
@@ -234,10 +240,8 @@ impl<'a> Comparison<'a> {
         }
         let strongest = self.rivals.iter().max_by(|a, b| a.over_process.total_cmp(&b.over_process));
         let log_odds = strongest.map_or(log_odds, |rival| rival.over_process);
-        // The reference from which the log refutes slack best shows the slope.
-        let refuted = self.rivals.iter().min_by(|a, b| a.advantage.total_cmp(&b.advantage));
-        let slope = refuted.map(of);
-        let is_process = log_odds <= -PROCESS_ODDS.ln();
+        let slope = strongest.map(of);
+        let is_process = log_odds <= -PROCESS_ODDS.ln() && self.at_once <= ANSWERS;
         let (kind, reason) = if is_process {
             (WaitKind::Process, Reason::Answers)
         } else {
@@ -272,4 +276,20 @@ impl<'a> Comparison<'a> {
         let alike = self.rivals.iter().filter(is_like);
         alike.min_by(|a, b| travel(a).total_cmp(&travel(b))).unwrap_or(best)
     }
+}
+
+#[cfg(test)]
+pub(super) fn show(shift: &Shift, samples: &Samples) {
+    let evidence = Evidence::new(shift, samples);
+    let of = Comparison::new(samples, &evidence);
+    println!("n {} zero {}", samples.samples.len(), samples.samples.iter().filter(|s| s.at_once()).count());
+    for c in samples.candidates.iter().filter(|c| c.stands) {
+        println!("stands {}", c.reference);
+    }
+    for r in &of.rivals {
+        let travel: Vec<f64> = r.candidate.times.iter().zip(&samples.samples).filter_map(|(t, s)| Some(s.came - (*t)?)).collect();
+        println!("{:50} prior {:.1} adv {:.1} free {:.1} over {:.1} partly {:.1} travel {:.3} +- {:.3}, M {:.3}", r.candidate.reference.to_string(), r.prior, r.advantage,
+            evidence.advantage(&r.slack, &of.answers, f64::INFINITY), r.over_process, r.partly, median(travel.iter().copied()), super::spread::deviation(&travel), samples.median_after(r.candidate));
+    }
+    println!("{:?}", of.verdict());
 }

@@ -3,4 +3,6 @@
 mod line;
 mod rates;
 mod recorder;
+
+pub(in crate::tool::cell::waits) use recorder::Chance;
 mod rules;

@@ -58,3 +58,22 @@ fn show() {
         println!("all {:?}", [sum(0), sum(1), sum(2)]);
     }
 }
+
+#[test]
+fn look() {
+    let seed: u64 = std::env::var("SEED").unwrap().parse().unwrap();
+    let at: u32 = std::env::var("LINE").unwrap().parse().unwrap();
+    let wide = if seed < 5000 { DEVELOPED } else { WIDER };
+    let (log, truths) = line(seed, wide);
+    println!("{truths:?}");
+    let text = log.text();
+    println!("{}", text.lines().skip(900).take(100).collect::<Vec<_>>().join("\n"));
+    let recording = crate::tool::cell::events::read(text.as_bytes()).expect("a log");
+    let shift = crate::tool::cell::waits::Shift::new(&[crate::tool::cell::waits::Log { name: "a.csv".to_owned(), recording }], None).expect("cycles");
+    println!("ways {:?}", shift.frequencies());
+    for of in crate::tool::cell::waits::samples(&shift) {
+        if of.key.place.line == at {
+            crate::tool::cell::waits::verdict::show(&shift, &of);
+        }
+    }
+}
