@@ -3,6 +3,7 @@
 //! - [`instrument`]: puts a recorder into a program, and takes it out;
 //! - [`slack`]: how much later the robot may come to its waits;
 //! - [`events`]: the log that a recorder writes, and its cycles.
+//! - [`waits`]: which waits are slack.
 
 pub mod events;
 mod hash;
