@@ -59,7 +59,7 @@ fn every_line_stays_and_the_recorder_comes_out_again() {
         assert!(lines.contains(&line.trim_end()), "{line}\n{text}");
     }
     let calls = [
-        "jrCycle;", "jrMove 2;", "jrDone 4\\If:=zHere.finep;", "jrWait 5;", "jrEnd 5\\Timeout:=bLate;",
+        "jrCycle;", "jrMove 2;", "jrDone 4\\Stops:=zHere.finep;", "jrWait 5;", "jrEnd 5\\Timeout:=bLate;",
         "jrOut 6,1;", "jrLoad 7,lPart.mass;",
     ];
     for call in calls {

@@ -9,5 +9,6 @@ pub mod events;
 mod hash;
 pub mod instrument;
 pub mod slack;
+pub mod waits;
 
 pub use hash::program_hash;

@@ -4,6 +4,7 @@ mod backinfo;
 mod backup;
 mod blind;
 mod calibrate;
+mod campaign;
 mod choice;
 mod common;
 mod diagnose;
@@ -63,6 +64,7 @@ enum Command {
     Place(Box<place::PlaceArgs>),
     Standstill(standstill::StandstillArgs),
     Instrument(Box<instrument::InstrumentArgs>),
+    Campaign(campaign::CampaignArgs),
     Excite(Box<excite::ExciteArgs>),
     Streamtest(streamtest::StreamtestArgs),
     Identify(Box<identify::IdentifyArgs>),
@@ -89,6 +91,7 @@ pub fn command_line() -> ExitCode {
         Command::Place(args) => place::run(&args),
         Command::Standstill(args) => standstill::run(&args),
         Command::Instrument(args) => instrument::run(&args),
+        Command::Campaign(args) => campaign::run(&args),
         Command::Excite(args) => excite::run(&args),
         Command::Streamtest(args) => streamtest::run(&args),
         Command::Identify(args) => identify::run(&args),

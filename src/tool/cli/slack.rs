@@ -8,7 +8,7 @@ use super::common::Job;
 use crate::retime::motion::simulate;
 use crate::tool::cell::program_hash;
 use crate::tool::cell::slack::{Planned, plan};
-use crate::tool::cell::waits::WaitsFile;
+use crate::tool::cell::waits::file::WaitsFile;
 use crate::tool::retrofit::read_program;
 
 /// Default risk.

@@ -18,10 +18,8 @@ const LARGEST: usize = 10_000_000;
 /// Filling of a block of 1024 bytes from which on it is written: one row more fits.
 const BLOCK: usize = 700;
 /// Names of the events, in the order of their numbers in the module.
-const EVENTS: [&str; 12] = [
-    "cycle", "start", "pass", "arrive", "wait", "end", "signal", "output", "load", "tool", "flush",
-    "lost",
-];
+const EVENTS: [&str; 11] =
+    ["cycle", "start", "arrive", "wait", "end", "signal", "output", "load", "tool", "flush", "lost"];
 /// Test signals on the arm side: speed (deg/s) and torque (Nm).
 const SPEED: u32 = 4001;
 const TORQUE: u32 = 4002;
@@ -70,6 +68,8 @@ pub struct Recorder<'a> {
     pub signals: Vec<RecordedSignal>,
     /// Its samples.
     pub sampling: Option<Sampling>,
+    /// Whether its calls at movements give the mass of the tool.
+    pub tools: bool,
     /// Number of the movement that begins later in every second cycle, and by how much, s.
     pub late: Option<(usize, f64)>,
 }
@@ -137,6 +137,7 @@ pub fn recorder(names: &Names, recorder: &Recorder<'_>) -> Result<String, tera::
     context.insert("block", &BLOCK);
     context.insert("signals", &signals);
     context.insert("sampling", &recorder.sampling.as_ref().map(samples));
+    context.insert("tools", &recorder.tools);
     context.insert("late", &late);
     Tera::one_off(TEMPLATE, &context, false)
 }

@@ -1,6 +1,7 @@
 //! Results as text, JSON and HTML.
 
 pub mod calibrate;
+pub mod campaign;
 pub mod diagnose;
 pub mod html;
 pub mod identify;

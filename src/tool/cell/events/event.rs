@@ -24,8 +24,6 @@ pub enum What {
     Cycle,
     /// A movement starts from standstill.
     Start,
-    /// The program has come to a movement that begins in flight.
-    Pass,
     /// A movement has ended at its stop point.
     Arrive,
     /// The program comes to a wait.
@@ -75,7 +73,6 @@ impl What {
         match event {
             "cycle" => Ok(What::Cycle),
             "start" => Ok(What::Start),
-            "pass" => Ok(What::Pass),
             "arrive" => Ok(What::Arrive),
             "wait" => Ok(What::Wait),
             "end" => Ok(What::End { by_limit: value.is_some_and(|value| value != 0.0) }),
@@ -91,6 +88,6 @@ impl What {
 
     /// Whether it belongs to a statement.
     pub(super) fn needs_place(self) -> bool {
-        matches!(self, What::Start | What::Pass | What::Arrive | What::Wait | What::End { .. })
+        matches!(self, What::Start | What::Arrive | What::Wait | What::End { .. })
     }
 }

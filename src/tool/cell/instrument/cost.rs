@@ -10,10 +10,12 @@ use crate::retime::motion::Simulation;
 use crate::retime::motion::timeline::What;
 use crate::tool::retrofit::INSTRUCTION_MS;
 
-/// Instructions for one note, its call included.
-const NOTE: f64 = 14.0;
+/// Instructions for one note, with those of its call.
+const NOTE: f64 = 13.0;
+/// Instructions for the count of a movement.
+const COUNT: f64 = 4.0;
 /// Instructions for the row of one note, when it is written.
-const ROW: f64 = 24.0;
+const ROW: f64 = 17.0;
 /// Time of writing a block of 1 kB, and rows in it, ms.
 const BLOCK_MS: f64 = 2.0;
 const ROWS_IN_BLOCK: f64 = 15.0;
@@ -98,6 +100,8 @@ pub(super) fn cost(
         match &event.what {
             What::Run(run) => {
                 movements += run.moves.len();
+                // The start from standstill.
+                notes += 1;
                 notes += run.moves.iter().map(|record| at(record.movement.span)).sum::<usize>();
             }
             What::Wait(record) => {
@@ -117,7 +121,7 @@ pub(super) fn cost(
     Cost {
         movements,
         notes,
-        notes_ms: INSTRUCTION_MS * NOTE * count,
+        notes_ms: INSTRUCTION_MS * (NOTE * count + COUNT * movements as f64),
         writing_ms: INSTRUCTION_MS * ROW * count + BLOCK_MS * blocks + FILE_MS * files + sample_ms,
         sampling_share: samplings
             .map_or(0.0, |own| 1e-3 * INSTRUCTION_MS * (SAMPLE + own.columns as f64) * own.rate),
@@ -134,10 +138,9 @@ pub(super) struct Recorded {
 impl Recorded {
     pub(super) fn new(site: &Site) -> Recorded {
         let notes = match &site.kind {
-            SiteKind::Movement { stop: Stop::Never, .. } => 1,
-            SiteKind::Movement { .. } | SiteKind::Wait { .. } => 2,
-            SiteKind::Output { .. } | SiteKind::Load(_) => 1,
-            SiteKind::Cycle => 0,
+            SiteKind::Movement { stop: Stop::Never, .. } | SiteKind::Cycle => 0,
+            SiteKind::Wait { .. } => 2,
+            SiteKind::Movement { .. } | SiteKind::Output { .. } | SiteKind::Load(_) => 1,
         };
         Recorded { span: site.span, notes }
     }

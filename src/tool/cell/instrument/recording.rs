@@ -18,7 +18,7 @@ use crate::tool::emit::{
     self, Names, RecordedSignal, RecordedSite, Recorder, Sampling, end_of_line, log_name,
 };
 use crate::tool::retrofit::{
-    OutputFile, RetrofitError, Source, file_and_line, is_streams, prefix, read_again, read_program,
+    OutputFile, RetrofitError, Source, file_and_line, is_streams, parses, prefix, read_again, read_program,
     with_edits,
 };
 
@@ -172,6 +172,7 @@ pub fn instrument(
     if let Some(samplings) = &mut samplings {
         samplings.fill(&without_samples, BUDGET_MS);
     }
+    let tools = has_tools(&found.sites);
     let recorder = Recorder {
         program: &hash,
         sites: recorded_sites(files, &found.sites, &watched),
@@ -181,12 +182,13 @@ pub fn instrument(
             interval: 1.0 / samples.rate,
             rows: own.rows,
         }),
+        tools,
         late,
     };
     let names = Names::of_recorder(&sources);
     let module = emit::recorder(&names, &recorder)
         .map_err(|error| InstrumentError::Template(error.to_string()))?;
-    let mut outputs = with_edits(files, edits(&sources, &found.sites, &names.prefix).into_iter())
+    let mut outputs = with_edits(files, edits(&sources, &found.sites, &names.prefix, tools).into_iter())
         .ok_or_else(|| InstrumentError::Differs("two insertions overlap".to_owned()))?;
     let beside = &files[program.modules[entry_id.module].span.file.0 as usize];
     let folder = beside.relative.rsplit_once('/').map_or("", |(folder, _)| folder);
@@ -349,15 +351,17 @@ fn numbered(watched: &[Watched], sites: usize) -> Vec<RecordedSignal> {
     watched.iter().enumerate().map(number).collect()
 }
 
-/// The insertions of all calls.
-fn edits(files: &[SourceFile], sites: &[Site], p: &str) -> Vec<Edit> {
-    let masses: BTreeSet<&String> = sites
-        .iter()
-        .filter_map(|site| match &site.kind {
-            SiteKind::Movement { mass, .. } => mass.as_ref(),
-            _ => None,
-        })
-        .collect();
+/// Whether movements have different tools; with one tool there is nothing to tell.
+fn has_tools(sites: &[Site]) -> bool {
+    let masses = sites.iter().filter_map(|site| match &site.kind {
+        SiteKind::Movement { mass, .. } => mass.as_ref(),
+        _ => None,
+    });
+    masses.collect::<BTreeSet<_>>().len() > 1
+}
+
+/// The insertions of all calls. `tools`: whether those at movements give the mass of the tool.
+fn edits(files: &[SourceFile], sites: &[Site], p: &str, tools: bool) -> Vec<Edit> {
     let mut edits = Vec::new();
     for (index, Site { span, kind }) in sites.iter().enumerate() {
         let number = index + 1;
@@ -365,13 +369,12 @@ fn edits(files: &[SourceFile], sites: &[Site], p: &str) -> Vec<Edit> {
         let calls = match kind {
             SiteKind::Cycle => [Some(format!("{p}Cycle")), None],
             SiteKind::Movement { stop, mass } => {
-                // With one tool there is nothing to tell.
-                let mass = mass.as_ref().filter(|_| masses.len() > 1);
+                let mass = mass.as_ref().filter(|_| tools);
                 let tool = mass.map_or_else(String::new, |mass| format!("\\Tool:={mass}"));
                 let done = match stop {
                     Stop::Never => None,
                     Stop::Always => Some(format!("{p}Done {number}")),
-                    Stop::If(text) => Some(format!("{p}Done {number}\\If:={text}")),
+                    Stop::If(text) => Some(format!("{p}Done {number}\\Stops:={text}")),
                 };
                 [Some(format!("{p}Move {number}{tool}")), done]
             }
@@ -404,6 +407,9 @@ fn check(
     (model, options): (&Model, &Options),
     before: &Simulation,
 ) -> Result<(), InstrumentError> {
+    if !parses(files, outputs) {
+        return Err(InstrumentError::Differs("it has syntax errors".to_owned()));
+    }
     let again = read_again(outputs);
     for (source, output) in files.iter().zip(&again) {
         if without_recorder(&output.file, prefix) != source.file.bytes {

@@ -3,7 +3,7 @@
 use crate::rapid::text::Span;
 use crate::retime::motion::arrivals::Anchor;
 use crate::retime::motion::timeline::{Event, What};
-use crate::tool::cell::waits::{After, EventEntry};
+use crate::tool::cell::waits::file::{After, EventEntry};
 use crate::tool::retrofit::Source;
 
 /// A simulated cycle with the files of its program.

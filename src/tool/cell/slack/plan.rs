@@ -5,7 +5,7 @@ use super::risk::{allowed, delays, longer_by, longer_cycles, needed};
 use crate::retime::motion::arrivals::{Anchor, Arrival, anchored};
 use crate::retime::motion::timeline::{Event, What};
 use crate::retime::motion::{Options, Simulation};
-use crate::tool::cell::waits::{KindEntry, RecordEntry, WaitEntry, WaitsFile, WayEntry};
+use crate::tool::cell::waits::file::{KindEntry, RecordEntry, WaitEntry, WaitsFile, WayEntry};
 use crate::tool::retrofit::Source;
 
 /// Slack below this is left, s.

@@ -1,6 +1,7 @@
 //! Results as one self-contained HTML page: style sheet and plots inline, no scripts, no external
 //! resources.
 
+mod campaign;
 mod cycle_curve;
 mod diagnose;
 mod energy_time;
@@ -21,6 +22,7 @@ mod standstill;
 mod summary;
 mod ways;
 
+pub use campaign::campaign_report;
 pub use diagnose::{Excerpt, Line, Pictures, diagnose_report};
 pub use grades::grades_report;
 pub use identify::{Traces, identify_report};
