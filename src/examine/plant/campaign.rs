@@ -1,7 +1,7 @@
 //! Two campaigns, before and after a retrofit, and what makes the comparison hard.
 
-use super::Plant;
 use super::conditions::Conditions;
+use super::layout::Plant;
 use super::meter::Unit;
 use super::script::Script;
 use super::truth::Run;

@@ -95,7 +95,7 @@ impl Cell {
 
     /// Speed override, `since` cycles after a restart.
     pub(super) fn speed(&self, seed: u64, cycle: u64, since: Option<u64>) -> f64 {
-        if cycle < self.first || since.is_some_and(|since| since <= AFTER_RESTART) {
+        if cycle < self.first || since.is_some_and(|since| since < AFTER_RESTART) {
             return 0.5;
         }
         let lowered = |from: u64| {
