@@ -110,6 +110,19 @@ fn what_a_delay_of_one_visit_does_is_what_the_truth_says() {
 }
 
 #[test]
+fn some_signals_stay_in_part_of_the_cycles() {
+    let stayed = |seed: u64| {
+        let run = events(&plant(Kind::Machine, seed), &one_wait(), CYCLES, 2);
+        let since_end = times(&run, |before, _| before.ended_s);
+        since_end.iter().filter(|of| of.is_some_and(|of| of < 0.0)).count()
+    };
+    let counts: Vec<usize> = (0..40).map(stayed).collect();
+    let with = counts.iter().filter(|count| **count > 0).count();
+    assert!((3..20).contains(&with), "{counts:?}");
+    assert!(counts.iter().all(|count| *count < CYCLES * 2 / 3), "{counts:?}");
+}
+
+#[test]
 fn drawn_cells_have_all_truths_and_the_robot_waits_in_them() {
     let script = cell();
     let mut seen = BTreeSet::new();

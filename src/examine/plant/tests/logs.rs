@@ -146,6 +146,19 @@ fn energies_add_up() {
 }
 
 #[test]
+fn brakes_end_the_power_of_holding() {
+    let script = cell();
+    let energy = |hold_w, brakes_after_s| {
+        let mut plant = Plant::draw(2, &script);
+        (plant.power.hold_w, plant.power.brakes_after_s) = (hold_w, brakes_after_s);
+        events(&plant, &script, 50, 1).energy_j()
+    };
+    let (free, held, braked) = (energy(0.0, 1e9), energy(100.0, 1e9), energy(100.0, 2.0));
+    assert!(free < braked && braked < held, "{free}, {braked}, {held} J");
+    assert!((energy(100.0, 0.0) - free).abs() < 1e-6);
+}
+
+#[test]
 fn lost_rows_are_counted() {
     let script = cell();
     let plant = Plant::draw(3, &script).calm();
