@@ -78,6 +78,7 @@ const WINGS: [Wing; 7] = [
             room("blind", &["robot"]),
             room("injected", &["robot", "dynamics", "log", "identify", "blind"]),
             room("worlds", &["blind"]),
+            room("plant", &[]),
         ],
     ),
     wing(
