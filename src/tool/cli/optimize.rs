@@ -7,15 +7,13 @@ use std::process::ExitCode;
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use similar::TextDiff;
 
 use super::common::{self, Format, Job, ProgramArgs};
 use super::keep_outs::keep_outs;
 use super::program_output::{
-    current_bytes, refuse_nested_output, whole_backup, write_folder, write_in_place,
+    diff, refuse_nested_output, whole_backup, write_folder, write_in_place,
 };
 use super::{backinfo, input, listing, output, slack, streams, suggest, undo};
-use crate::rapid::text::charset;
 use crate::retime::optimize::cost::Cost;
 use crate::retime::optimize::freedom::{Bound, Freedom};
 use crate::retime::optimize::resting::IdleState;
@@ -490,21 +488,4 @@ fn undo_in_place(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
         common::notes(cell.quiet, &done);
     }
     common::print(args.program.format, || serde_json::json!({ "undone": done }), String::new)
-}
-
-fn diff(job: &Job, result: &Retrofit) -> String {
-    let mut text = String::new();
-    for file in &result.outputs {
-        let before = current_bytes(job, file).unwrap_or_default();
-        if before == file.bytes {
-            continue;
-        }
-        let charset = charset(&file.bytes);
-        let (old, new) = (charset.decode(&before), charset.decode(&file.bytes));
-        let from =
-            if before.is_empty() { "/dev/null".to_owned() } else { format!("a/{}", file.path) };
-        let diff = TextDiff::from_lines(old.as_ref(), new.as_ref());
-        text.push_str(&diff.unified_diff().header(&from, &format!("b/{}", file.path)).to_string());
-    }
-    text
 }

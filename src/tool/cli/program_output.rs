@@ -5,12 +5,13 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
+use similar::TextDiff;
 
 use super::common::Job;
 use super::input::Input;
 use super::output::is_same_file;
 use super::{output, undo};
-use crate::rapid::text::{FileId, SourceFile};
+use crate::rapid::text::{FileId, SourceFile, charset};
 use crate::tool::retrofit::{OutputFile, OutputKind, Retrofit, Source};
 
 /// The backup, if the command line names all of it.
@@ -182,7 +183,7 @@ fn encoded<'a>(files: &[Source], file: &OutputFile, bytes: &'a [u8]) -> Cow<'a, 
 }
 
 /// The current content of the user's file for an output, decoded in the same way.
-pub(super) fn current_bytes(job: &Job, file: &OutputFile) -> Option<Vec<u8>> {
+fn current_bytes(job: &Job, file: &OutputFile) -> Option<Vec<u8>> {
     if !job.is_refreshed() {
         return input_file(job, file).map(|(_, bytes)| bytes.to_vec());
     }
@@ -219,4 +220,22 @@ fn path_in_tree(job: &Job, file: &OutputFile) -> PathBuf {
     }
     let root = job.files.first().and_then(|source| source.file.path.strip_suffix(&source.relative));
     PathBuf::from(root.unwrap_or_default()).join(&file.path)
+}
+
+/// The changes of a program as a unified diff.
+pub(super) fn diff(job: &Job, result: &Retrofit) -> String {
+    let mut text = String::new();
+    for file in &result.outputs {
+        let before = current_bytes(job, file).unwrap_or_default();
+        if before == file.bytes {
+            continue;
+        }
+        let charset = charset(&file.bytes);
+        let (old, new) = (charset.decode(&before), charset.decode(&file.bytes));
+        let from =
+            if before.is_empty() { "/dev/null".to_owned() } else { format!("a/{}", file.path) };
+        let diff = TextDiff::from_lines(old.as_ref(), new.as_ref());
+        text.push_str(&diff.unified_diff().header(&from, &format!("b/{}", file.path)).to_string());
+    }
+    text
 }
