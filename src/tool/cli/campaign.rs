@@ -73,7 +73,10 @@ pub(super) fn run(args: &CampaignArgs) -> anyhow::Result<ExitCode> {
     common::note(args.quiet, &format!("wrote {}", path.display()));
     common::print(
         args.format,
-        || json!({ "program": state.program, "done": done, "next": next.text(), "finished": next == Next::Finished }),
+        || {
+            let finished = matches!(next, Next::Finished);
+            json!({ "program": state.program, "done": done, "next": next.text(), "finished": finished })
+        },
         || report::text(&done, &next.text()),
     )
 }

@@ -24,7 +24,7 @@ use crate::tool::emit::Layout;
 use crate::tool::report::place::Places;
 use crate::tool::report::{self};
 use crate::tool::retrofit::{
-    Budget, CLOSEST_S, Form, Objective, Retrofit, SPACING_S, Settings, declared_in, freed,
+    Budget, CLOSEST_S, Form, Objective, SPACING_S, Settings, declared_in, freed,
     is_streams, retrofit, written_in,
 };
 use crate::tool::suggest::Applied;

@@ -26,17 +26,16 @@ pub(super) struct Step {
 }
 
 /// What comes next.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Next<S = ()> {
+pub(super) enum Next {
     /// A command.
-    Do(S),
+    Do(Step),
     /// Something in the cell.
     InTheCell(String),
     /// Nothing.
     Finished,
 }
 
-impl<S> Next<S> {
+impl Next {
     /// What to do, in words.
     pub(super) fn text(&self) -> String {
         match self {
@@ -98,7 +97,7 @@ impl<'a> Steps<'a> {
     }
 
     /// The next step.
-    pub(super) fn next(&self) -> anyhow::Result<Next<Step>> {
+    pub(super) fn next(&self) -> anyhow::Result<Next> {
         let program = &self.state.program;
         let has = |name: &str| self.path(name).exists();
         if !has("recorded.json") {
@@ -151,11 +150,11 @@ impl<'a> Steps<'a> {
         Ok(Next::Finished)
     }
 
-    fn step(&self, name: &'static str, arguments: Vec<String>, result: &str) -> Next<Step> {
+    fn step(&self, name: &'static str, arguments: Vec<String>, result: &str) -> Next {
         Next::Do(Step { name, arguments, result: self.path(result) })
     }
 
-    fn instrument(&self, program: &str, to: &str) -> Next<Step> {
+    fn instrument(&self, program: &str, to: &str) -> Next {
         let mut arguments = vec!["instrument".to_owned(), program.to_owned()];
         let robot = self.state.robot.iter();
         arguments.extend(robot.flat_map(|robot| ["--robot".to_owned(), robot.clone()]));
@@ -170,7 +169,7 @@ impl<'a> Steps<'a> {
         self.step("instrument", arguments, &format!("{to}.json"))
     }
 
-    fn shift(&self, program: &str, logs: &str) -> Next<Step> {
+    fn shift(&self, program: &str, logs: &str) -> Next {
         Next::InTheCell(format!(
             "load {} into the controller, run it for a shift, and copy its log HOME:/jr_….csv and the log of the \
              power meter (t, power) into {}",
