@@ -101,8 +101,9 @@ fn of_wait(shift: &Shift, all: &[Vec<Moment>], key: Key, visits: &[(usize, &Visi
     let by_limit = visits.iter().filter(|(_, visit)| visit.by_limit).count();
     let left = visits.iter().filter(|(_, visit)| visit.ended.is_none()).count();
     let ended = visits.iter().filter(|(_, visit)| !visit.by_limit);
-    let ended: Vec<(usize, &Visit, f64)> =
-        ended.filter_map(|(cycle, visit)| Some((*cycle, *visit, visit.length()?.max(0.0)))).collect();
+    let ended: Vec<(usize, &Visit, f64)> = ended
+        .filter_map(|(cycle, visit)| Some((*cycle, *visit, visit.length()?.max(0.0))))
+        .collect();
     let awaited = awaited(all, &key, &ended);
     let samples: Vec<Sample> = ended
         .iter()
@@ -182,7 +183,8 @@ pub(super) fn candidates(
                 place: most_frequent(known.iter().filter_map(|(moment, _)| moment.place.as_ref())),
                 times: times.iter().map(|of| of.map(|(moment, _)| moment.t)).collect(),
                 stands: 2 * standing > known.len(),
-                answered: 2 * known.iter().filter(|(moment, _)| moment.answered).count() > known.len(),
+                answered: 2 * known.iter().filter(|(moment, _)| moment.answered).count()
+                    > known.len(),
             }
         })
     });

@@ -95,17 +95,23 @@ impl Recorder {
         self.text
     }
 
+    /// The log.
+    pub(super) fn log(self, name: &str) -> Log {
+        let recording = read(self.text().as_bytes()).expect("a log");
+        Log { name: name.to_owned(), recording }
+    }
+
     /// The verdict on each line.
     pub(super) fn verdicts(self) -> Vec<(u32, Verdict, Option<Reference>)> {
-        let text = self.text();
-        let recording = read(text.as_bytes()).expect("a log");
-        let shift = Shift::new(&[Log { name: "a.csv".to_owned(), recording }], None).expect("cycles");
+        let shift = Shift::new(&[self.log("a.csv")], None).expect("cycles");
         let all = samples(&shift);
-        all.iter().map(|of| {
-            let verdict = verdict(&shift, of);
-            let after = verdict.after.map(|index| of.candidates[index].reference.clone());
-            (of.key.place.line, verdict, after)
-        }).collect()
+        all.iter()
+            .map(|of| {
+                let verdict = verdict(&shift, of);
+                let after = verdict.after.map(|index| of.candidates[index].reference.clone());
+                (of.key.place.line, verdict, after)
+            })
+            .collect()
     }
 }
 
