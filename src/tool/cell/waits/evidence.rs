@@ -164,10 +164,3 @@ impl<'a> Evidence<'a> {
         sum + f64::clamp(of_cycle, -most, most)
     }
 }
-
-impl Evidence<'_> {
-    /// When the robot came, for each visit, s.
-    pub(super) fn came(&self) -> impl Iterator<Item = f64> {
-        self.samples.samples.iter().map(|sample| sample.came)
-    }
-}

@@ -264,10 +264,9 @@ impl<'a> Comparison<'a> {
 
     /// The latest reference that predicts about as well: only movements after it may use the slack.
     fn latest_like<'b>(&'b self, best: &'b Rival<'a>, decided: f64) -> &'b Rival<'a> {
-        let travel = |rival: &Rival<'_>| {
-            let times = rival.candidate.times.iter();
-            let came = self.evidence.came();
-            median(times.zip(came).filter_map(|(t, came)| Some(came - (*t)?)))
+        let later = |rival: &Rival<'_>| {
+            let pairs = rival.candidate.times.iter().zip(&best.candidate.times);
+            median(pairs.filter_map(|(t, of_best)| Some((*t)? - (*of_best)?)))
         };
         let is_like = |rival: &&Rival<'_>| {
             let worse = self.evidence.advantage(&best.slack, &rival.slack, MOST_OF_CYCLE);
@@ -275,6 +274,6 @@ impl<'a> Comparison<'a> {
             is_likely && worse < PROCESS_ODDS.ln()
         };
         let alike = self.rivals.iter().filter(is_like);
-        alike.min_by(|a, b| travel(a).total_cmp(&travel(b))).unwrap_or(best)
+        alike.max_by(|a, b| later(a).total_cmp(&later(b))).unwrap_or(best)
     }
 }

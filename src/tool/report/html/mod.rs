@@ -19,6 +19,7 @@ mod simulation;
 mod source;
 mod standstill;
 mod summary;
+mod waits;
 mod ways;
 
 pub use diagnose::{Excerpt, Line, Pictures, diagnose_report};
@@ -27,6 +28,7 @@ pub use identify::{Traces, identify_report};
 pub use page::ReportError;
 pub use placement::place_report;
 pub use simulation::simulate_report;
+pub use waits::waits_report;
 
 use tera::Context;
 

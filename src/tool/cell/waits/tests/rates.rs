@@ -72,35 +72,51 @@ fn outcomes(seed: u64, wide: Wide) -> Vec<(Station, [usize; 2])> {
             let of = all.iter().find(|of| of.key == wait.samples.key).expect("the wait");
             let told = verdict(&both, of);
             kind = told.kind;
-            if std::env::var("SHOW").is_ok() {
-                println!(
-                    "{seed} {at} {truth:?} {} {} zero {:.2} {experiment:?}: {told:?}",
-                    wait.verdict.reason.word(),
-                    wait.verdict.log_odds,
-                    wait.at_once
-                );
-            }
-        }
-        if std::env::var("SHOW").is_ok() && outcome(kind, truth) == 2 {
-            println!("WRONG {seed} {at} {truth:?} {:?}", wait.verdict);
         }
         outcomes.push((truth, [before, outcome(kind, truth)]));
     }
     outcomes
 }
 
-#[test]
-fn show() {
-    for (wide, seeds) in [(DEVELOPED, 0..60), (WIDER, 5000..5060)] {
-        let found = rates(seeds, wide);
-        for (station, counts) in &found {
-            println!("{station:?} {counts:?}");
+/// Sums over the stations that are slack or process.
+fn totals(found: &BTreeMap<Station, [Counts; 2]>) -> [Counts; 2] {
+    let told = found.iter().filter(|(station, _)| **station != Station::Press);
+    told.fold([[0; 3]; 2], |mut sum, (_, of)| {
+        for (sums, counts) in sum.iter_mut().zip(of) {
+            for (sum, count) in sums.iter_mut().zip(counts) {
+                *sum += count;
+            }
         }
-        let sum = |k: usize, j: usize| found.values().map(|of| of[j][k]).sum::<usize>();
-        println!(
-            "all {:?} {:?}",
-            [sum(0, 0), sum(1, 0), sum(2, 0)],
-            [sum(0, 1), sum(1, 1), sum(2, 1)]
-        );
-    }
+        sum
+    })
+}
+
+/// Number of lines that each test draws; `JOULEPATH_LINES` draws more.
+fn lines() -> u64 {
+    std::env::var("JOULEPATH_LINES").ok().and_then(|text| text.parse().ok()).unwrap_or(24)
+}
+
+fn check(seeds: std::ops::Range<u64>, wide: Wide) {
+    let found = rates(seeds, wide);
+    let [first, second] = totals(&found);
+    let sum = |of: Counts| of.iter().sum::<usize>() as f64;
+    let shown = format!("{found:#?} {first:?} {second:?}");
+    println!("{shown}");
+    assert!(first[2] as f64 <= 0.01 * sum(first) + 1.0, "{shown}");
+    assert!(second[2] as f64 <= 0.01 * sum(second) + 1.0, "{shown}");
+    assert!(first[0] as f64 >= 0.7 * sum(first), "{shown}");
+    assert!(second[0] as f64 >= 0.85 * sum(second), "{shown}");
+    // A machine that answers in part is never used as slack.
+    let pressed = found.get(&Station::Press).copied().unwrap_or_default();
+    assert!(pressed[0][2] + pressed[1][2] <= 2, "{shown}");
+}
+
+#[test]
+fn rates_on_lines_like_those_of_the_development() {
+    check(0..lines(), DEVELOPED);
+}
+
+#[test]
+fn rates_on_other_and_wider_lines() {
+    check(20_000..20_000 + lines(), WIDER);
 }
