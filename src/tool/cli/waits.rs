@@ -11,6 +11,7 @@ use super::common::{self, Format};
 use super::{input, output};
 use crate::rapid::text::decode;
 use crate::tool::cell::events::{Place, read};
+use crate::tool::cell::waits::file::WaitsFile;
 use crate::tool::cell::waits::{Found, Log, find, record};
 use crate::tool::report::html::waits_report;
 use crate::tool::report::waits::{self as report, Waits};
@@ -73,7 +74,10 @@ pub(super) fn run(args: &WaitsArgs) -> anyhow::Result<ExitCode> {
     let path = args.out.display().to_string();
     let of = Waits { found: &found, lines: &lines, program: &program, path: &path };
     let page = args.report.as_ref().map(|_| waits_report(of, &notes)).transpose()?;
-    output::write(&args.out, record(&found).text()?.as_bytes())?;
+    let written = record(&found).text()?;
+    // What optimize could not read is not written.
+    WaitsFile::parse(&written)?;
+    output::write(&args.out, written.as_bytes())?;
     if let (Some(path), Some(page)) = (&args.report, page) {
         output::write(path, page.as_bytes())?;
     }

@@ -7,6 +7,8 @@
 
 use std::f64::consts::PI;
 
+use super::spread::{median, quantile, sorted};
+
 /// Share of times that are nothing like those around them.
 const RARE: f64 = 0.02;
 /// Least width of the kernel, s, and in steps of the clock: rounding of the robot's coming makes a wait
@@ -48,7 +50,7 @@ impl Known {
 pub(super) fn width(values: impl Iterator<Item = f64>, count: usize, step_s: f64) -> f64 {
     let values: Vec<f64> = values.collect();
     let differences = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-    let quarter = super::spread::quantile(&super::spread::sorted(differences), 0.25);
+    let quarter = quantile(&sorted(differences), 0.25);
     let deviation = if quarter.is_finite() { quarter / QUARTER } else { 0.0 };
     (SILVERMAN * deviation * (count.max(2) as f64).powf(-0.2))
         .max(LEAST_WIDTH_S)
@@ -65,7 +67,7 @@ pub(super) fn trend(times: &[(f64, Known)]) -> f64 {
         }
         _ => None,
     });
-    let trend = super::spread::median(pairs);
+    let trend = median(pairs);
     if trend.is_finite() { trend } else { 0.0 }
 }
 

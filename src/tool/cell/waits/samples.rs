@@ -86,7 +86,7 @@ pub struct Samples {
 /// All waits of a shift, in the order of the program's text.
 #[must_use]
 pub fn samples(shift: &Shift) -> Vec<Samples> {
-    let all: Vec<Vec<Moment>> = shift.cycles.iter().map(moments).collect();
+    let all: Vec<Vec<Moment>> = moments(&shift.cycles);
     let mut by_key: BTreeMap<Key, Vec<(usize, &Visit)>> = BTreeMap::new();
     for (index, cycle) in shift.cycles.iter().enumerate() {
         for visit in &cycle.visits {
@@ -225,13 +225,6 @@ impl Samples {
         let pairs = self.samples.iter().zip(&candidate.times);
         let waited = pairs.filter(|(sample, _)| !sample.at_once());
         median(waited.filter_map(|(sample, t)| Some(sample.end() - (*t)?)))
-    }
-
-    /// Median time from a reference to the robot's coming, s.
-    #[must_use]
-    pub fn median_travel(&self, candidate: &Candidate) -> f64 {
-        let pairs = self.samples.iter().zip(&candidate.times);
-        median(pairs.filter_map(|(sample, t)| Some(sample.came - (*t)?)))
     }
 
     /// Whether the program sets an output where the robot stands at the wait.

@@ -77,6 +77,12 @@ impl Recorder {
         self.t - 0.002
     }
 
+    /// A measured value changes.
+    pub(super) fn value(&mut self, signal: &str, value: f64) {
+        self.row(self.t, &format!(",,signal,{value},{signal}"));
+        self.t += 0.002;
+    }
+
     /// Waits for a signal that comes, or came, at `at`.
     pub(super) fn wait(&mut self, line: u32, signal: &str, at: f64) {
         self.row(self.t, &format!("Cell.mod,{line},wait,,{signal}"));

@@ -1,7 +1,7 @@
 //! Each rule on a cell that shows it.
 
 use super::recorder::{Chance, Recorder};
-use crate::tool::cell::waits::{Kind, Level, Reason, Reference, Verdict, WaitKind};
+use crate::tool::cell::waits::{Kind, Level, Reason, Reference, Shift, Verdict, WaitKind, samples};
 
 /// A cell: after an operator (line 10) the robot grips (20), unloads a machine (30), clamps (40).
 struct Cell {
@@ -185,4 +185,22 @@ fn stated_times_and_what_is_always_there_are_named() {
     let verdicts = log.verdicts();
     assert_eq!(kind(&verdicts, 6), (WaitKind::Process, Reason::Stated));
     assert_eq!(kind(&verdicts, 7), (WaitKind::Unknown, Reason::AlwaysThere));
+}
+
+#[test]
+fn a_measured_value_is_no_reference() {
+    let mut log = Recorder::new(0.001);
+    for i in 0..40 {
+        log.cycle();
+        for k in 0..30 {
+            log.value("aiForce", f64::from(i * 30 + k));
+        }
+        log.travel(5, 2.0);
+        let at = log.t + 1.0 + 0.05 * f64::from(i % 7);
+        log.wait(7, "diAir", at);
+    }
+    let log = log.log("a.csv");
+    let shift = Shift::new(&[log], None).expect("cycles");
+    let all = samples(&shift);
+    assert!(all[0].candidates.len() < 10, "{}", all[0].candidates.len());
 }
