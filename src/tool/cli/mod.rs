@@ -37,6 +37,7 @@ mod streams;
 mod streamtest;
 mod suggest;
 mod undo;
+mod waits;
 
 use std::io::{ErrorKind, Write as _};
 use std::process::ExitCode;
@@ -69,6 +70,7 @@ enum Command {
     Streamtest(streamtest::StreamtestArgs),
     Identify(Box<identify::IdentifyArgs>),
     Calibrate(Box<calibrate::CalibrateArgs>),
+    Waits(waits::WaitsArgs),
     Predict(predict::PredictArgs),
     Diagnose(Box<diagnose::DiagnoseArgs>),
     Blind(blind::BlindArgs),
@@ -96,6 +98,7 @@ pub fn command_line() -> ExitCode {
         Command::Streamtest(args) => streamtest::run(&args),
         Command::Identify(args) => identify::run(&args),
         Command::Calibrate(args) => calibrate::run(&args),
+        Command::Waits(args) => waits::run(&args),
         Command::Predict(args) => predict::run(&args),
         Command::Diagnose(args) => diagnose::run(&args),
         Command::Blind(args) => blind::run(&args),

@@ -20,4 +20,5 @@ pub mod svg;
 pub mod table;
 pub mod text;
 pub mod trajectory;
+pub mod waits;
 mod whole_cycle;

@@ -7,6 +7,8 @@
 
 use std::f64::consts::PI;
 
+use super::spread::{median, quantile, sorted};
+
 /// Share of times that are nothing like those around them.
 const RARE: f64 = 0.02;
 /// Least width of the kernel, s, and in steps of the clock: rounding of the robot's coming makes a wait
@@ -48,9 +50,11 @@ impl Known {
 pub(super) fn width(values: impl Iterator<Item = f64>, count: usize, step_s: f64) -> f64 {
     let values: Vec<f64> = values.collect();
     let differences = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-    let quarter = super::spread::quantile(&super::spread::sorted(differences), 0.25);
+    let quarter = quantile(&sorted(differences), 0.25);
     let deviation = if quarter.is_finite() { quarter / QUARTER } else { 0.0 };
-    (SILVERMAN * deviation * (count.max(2) as f64).powf(-0.2)).max(LEAST_WIDTH_S).max(LEAST_STEPS * step_s)
+    (SILVERMAN * deviation * (count.max(2) as f64).powf(-0.2))
+        .max(LEAST_WIDTH_S)
+        .max(LEAST_STEPS * step_s)
 }
 
 /// How much later the times get per cycle: the median over pairs half the window apart. `times` are
@@ -63,7 +67,7 @@ pub(super) fn trend(times: &[(f64, Known)]) -> f64 {
         }
         _ => None,
     });
-    let trend = super::spread::median(pairs);
+    let trend = median(pairs);
     if trend.is_finite() { trend } else { 0.0 }
 }
 
@@ -125,7 +129,8 @@ mod tests {
     #[test]
     fn masses_are_those_of_kaplan_and_meier() {
         // Of 10, ≤ 8, 6 and ≤ 3: 10 has a quarter; 6 half of the rest; the other half is below.
-        let others = [Known::AtMost(3.0), Known::Exact(10.0), Known::AtMost(8.0), Known::Exact(6.0)];
+        let others =
+            [Known::AtMost(3.0), Known::Exact(10.0), Known::AtMost(8.0), Known::Exact(6.0)];
         let below = |x: f64| log_density(Known::AtMost(x), &mut others.clone(), 1e-4, 60.0).exp();
         assert!((below(9.0) - (0.98 * 0.75 + 0.01)).abs() < 1e-3);
         assert!((below(5.0) - (0.98 * 0.375 + 0.01)).abs() < 1e-3);

@@ -6,10 +6,13 @@
 //! later delays the machine in part. Each visit's r is predicted from the visits of the cycles around it that
 //! took the same way: what drifts over a shift, or differs by way, tells nothing.
 
+use std::collections::BTreeSet;
+
 use super::density::{Known, log_density, trend, width};
 use super::samples::{Candidate, Samples};
 use super::shift::Shift;
 use super::spread::median;
+use crate::tool::cell::events::Cycle;
 
 /// Cycles of the same way to each side from which a visit is predicted.
 const REACH: usize = 24;
@@ -59,7 +62,7 @@ impl<'a> Evidence<'a> {
         by_way.sort_by_key(|i| (positions[visits[*i].cycle], visits[*i].occurrence));
         let step = by_way.len().div_ceil(MAX_VISITS).max(1);
         let mut others = vec![Vec::new(); visits.len()];
-        let mut cycles = std::collections::BTreeSet::new();
+        let mut cycles = BTreeSet::new();
         for (at, index) in by_way.iter().enumerate() {
             let Some((way, position)) = positions[visits[*index].cycle] else { continue };
             if position % step != 0 || counts[way] < MIN_OF_WAY {
@@ -83,7 +86,7 @@ impl<'a> Evidence<'a> {
             others[*index] = near.into_iter().step_by(stride).collect();
             cycles.insert(visits[*index].cycle);
         }
-        let cycle_s = median(shift.cycles.iter().map(super::super::events::Cycle::duration));
+        let cycle_s = median(shift.cycles.iter().map(Cycle::duration));
         Evidence { samples, others, by_way, cycle_s, step_s: shift.step_s, cycles: cycles.len() }
     }
 
@@ -162,12 +165,5 @@ impl<'a> Evidence<'a> {
             }
         }
         sum + f64::clamp(of_cycle, -most, most)
-    }
-}
-
-impl Evidence<'_> {
-    /// When the robot came, for each visit, s.
-    pub(super) fn came(&self) -> impl Iterator<Item = f64> {
-        self.samples.samples.iter().map(|sample| sample.came)
     }
 }

@@ -148,7 +148,9 @@ pub enum WaitsFileError {
         message: String,
     },
     /// Another version of the form.
-    #[error("format = {found}: this version reads format {FORMAT}; write it anew with `joulepath waits`")]
+    #[error(
+        "format = {found}: this version reads format {FORMAT}; write it anew with `joulepath waits`"
+    )]
     Format {
         /// The version of the file.
         found: u32,
@@ -169,7 +171,9 @@ pub enum WaitsFileError {
         expected: usize,
     },
     /// A number that is none.
-    #[error("{place}: {list} has a number that is not finite; write the file anew with `joulepath waits`")]
+    #[error(
+        "{place}: {list} has a number that is not finite; write the file anew with `joulepath waits`"
+    )]
     NotFinite {
         /// The wait or the way.
         place: String,
@@ -186,7 +190,9 @@ pub enum WaitsFileError {
         place: String,
     },
     /// A recorded wait that is not in the list.
-    #[error("{place} is recorded in a way, but no [[wait]] has this file and line; add it, or write the file anew with `joulepath waits`")]
+    #[error(
+        "{place} is recorded in a way, but no [[wait]] has this file and line; add it, or write the file anew with `joulepath waits`"
+    )]
     NoWait {
         /// The wait.
         place: String,
@@ -217,7 +223,9 @@ impl WaitsFile {
         }
         for wait in &file.wait {
             if wait.kind == KindEntry::Slack && wait.after.is_none() {
-                return Err(WaitsFileError::NoReference { place: format!("{}:{}", wait.file, wait.line) });
+                return Err(WaitsFileError::NoReference {
+                    place: format!("{}:{}", wait.file, wait.line),
+                });
             }
         }
         for (number, way) in file.way.iter().enumerate() {

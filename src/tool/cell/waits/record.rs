@@ -1,6 +1,8 @@
 //! What is found, as `waits.toml`.
 
-use super::file::{After, EventEntry, FORMAT, KindEntry, RecordEntry, WaitEntry, WaitsFile, WayEntry};
+use super::file::{
+    After, EventEntry, FORMAT, KindEntry, RecordEntry, WaitEntry, WaitsFile, WayEntry,
+};
 use super::find::{Found, Wait};
 use super::reference::Kind;
 use super::samples::{Candidate, Sample};

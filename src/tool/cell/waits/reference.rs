@@ -1,6 +1,7 @@
 //! Events from which the time of a machine may count.
 
 use std::cmp::Ordering;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use crate::tool::cell::events::{Cycle, Event, Place, What};
@@ -81,8 +82,32 @@ pub(super) struct Moment {
     pub(super) answered: bool,
 }
 
-/// The moments of a cycle, in order.
-pub(super) fn moments(cycle: &Cycle) -> Vec<Moment> {
+/// Most levels of a signal that are told apart: others are measured values, no events.
+const MAX_LEVELS: usize = 8;
+
+/// The moments of each cycle, in order.
+pub(super) fn moments(cycles: &[Cycle]) -> Vec<Vec<Moment>> {
+    let mut levels: BTreeMap<&str, BTreeSet<Level>> = BTreeMap::new();
+    for event in cycles.iter().flat_map(|cycle| &cycle.events) {
+        if let (What::Output(level) | What::Signal(level), Some(name)) = (event.what, &event.signal)
+        {
+            let of = levels.entry(name).or_default();
+            if of.len() <= MAX_LEVELS {
+                of.insert(Level(level));
+            }
+        }
+    }
+    let is_event = |moment: &Moment| match &moment.kind {
+        Kind::Output(name, _) | Kind::Signal(name, _) => {
+            levels.get(name.as_str()).is_none_or(|of| of.len() <= MAX_LEVELS)
+        }
+        _ => true,
+    };
+    let of = |cycle: &Cycle| of_cycle(cycle).into_iter().filter(is_event).collect();
+    cycles.iter().map(of).collect()
+}
+
+fn of_cycle(cycle: &Cycle) -> Vec<Moment> {
     let first = Moment { t: cycle.start, cmd: 0, kind: Kind::Cycle, place: None, answered: false };
     let of = |event: &Event| {
         let place = event.place.clone();

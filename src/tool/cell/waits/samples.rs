@@ -86,7 +86,7 @@ pub struct Samples {
 /// All waits of a shift, in the order of the program's text.
 #[must_use]
 pub fn samples(shift: &Shift) -> Vec<Samples> {
-    let all: Vec<Vec<Moment>> = shift.cycles.iter().map(moments).collect();
+    let all: Vec<Vec<Moment>> = moments(&shift.cycles);
     let mut by_key: BTreeMap<Key, Vec<(usize, &Visit)>> = BTreeMap::new();
     for (index, cycle) in shift.cycles.iter().enumerate() {
         for visit in &cycle.visits {
@@ -101,8 +101,9 @@ fn of_wait(shift: &Shift, all: &[Vec<Moment>], key: Key, visits: &[(usize, &Visi
     let by_limit = visits.iter().filter(|(_, visit)| visit.by_limit).count();
     let left = visits.iter().filter(|(_, visit)| visit.ended.is_none()).count();
     let ended = visits.iter().filter(|(_, visit)| !visit.by_limit);
-    let ended: Vec<(usize, &Visit, f64)> =
-        ended.filter_map(|(cycle, visit)| Some((*cycle, *visit, visit.length()?.max(0.0)))).collect();
+    let ended: Vec<(usize, &Visit, f64)> = ended
+        .filter_map(|(cycle, visit)| Some((*cycle, *visit, visit.length()?.max(0.0))))
+        .collect();
     let awaited = awaited(all, &key, &ended);
     let samples: Vec<Sample> = ended
         .iter()
@@ -182,7 +183,8 @@ pub(super) fn candidates(
                 place: most_frequent(known.iter().filter_map(|(moment, _)| moment.place.as_ref())),
                 times: times.iter().map(|of| of.map(|(moment, _)| moment.t)).collect(),
                 stands: 2 * standing > known.len(),
-                answered: 2 * known.iter().filter(|(moment, _)| moment.answered).count() > known.len(),
+                answered: 2 * known.iter().filter(|(moment, _)| moment.answered).count()
+                    > known.len(),
             }
         })
     });
@@ -223,13 +225,6 @@ impl Samples {
         let pairs = self.samples.iter().zip(&candidate.times);
         let waited = pairs.filter(|(sample, _)| !sample.at_once());
         median(waited.filter_map(|(sample, t)| Some(sample.end() - (*t)?)))
-    }
-
-    /// Median time from a reference to the robot's coming, s.
-    #[must_use]
-    pub fn median_travel(&self, candidate: &Candidate) -> f64 {
-        let pairs = self.samples.iter().zip(&candidate.times);
-        median(pairs.filter_map(|(sample, t)| Some(sample.came - (*t)?)))
     }
 
     /// Whether the program sets an output where the robot stands at the wait.

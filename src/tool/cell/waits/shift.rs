@@ -37,7 +37,6 @@ pub struct Shift {
 const STEPS_S: [f64; 9] = [0.1, 0.05, 0.024, 0.02, 0.016, 0.012, 0.01, 0.008, 0.004];
 const ROUNDING_S: f64 = 0.0006;
 
-
 impl Shift {
     /// The cycles of logs that belong together.
     ///
@@ -171,6 +170,7 @@ fn step(logs: &[Log]) -> f64 {
         let sessions = logs.iter().flat_map(|log| &log.recording.sessions);
         sessions.flat_map(|session| &session.events).map(|event| event.t)
     };
-    let is_multiple = |step: f64| times().all(|t| (t - (t / step).round() * step).abs() < ROUNDING_S);
+    let is_multiple =
+        |step: f64| times().all(|t| (t - (t / step).round() * step).abs() < ROUNDING_S);
     STEPS_S.into_iter().find(|step| is_multiple(*step)).unwrap_or(0.001)
 }

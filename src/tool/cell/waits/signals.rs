@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::reference::{AT_ONCE_S, Kind, Moment, Reference, moments};
+use super::reference::{AT_ONCE_S, Kind, Level, Moment, Reference, moments};
 use super::samples::{Sample, candidates};
 use super::shift::Shift;
 use super::spread::{deviation, median};
@@ -35,8 +35,8 @@ pub struct SignalTime {
 /// The signals of a shift that are recorded or waited for.
 #[must_use]
 pub fn signals(shift: &Shift) -> Vec<SignalTime> {
-    let all: Vec<Vec<Moment>> = shift.cycles.iter().map(moments).collect();
-    let mut changes: BTreeMap<(String, Option<super::Level>), Vec<(usize, f64)>> = BTreeMap::new();
+    let all: Vec<Vec<Moment>> = moments(&shift.cycles);
+    let mut changes: BTreeMap<(String, Option<Level>), Vec<(usize, f64)>> = BTreeMap::new();
     for (cycle, moments) in all.iter().enumerate() {
         for moment in moments {
             if let Kind::Signal(name, level) = &moment.kind {
@@ -65,7 +65,7 @@ fn of_signal(
     shift: &Shift,
     all: &[Vec<Moment>],
     signal: String,
-    level: Option<super::Level>,
+    level: Option<Level>,
     times: &[(usize, f64)],
 ) -> Option<SignalTime> {
     let sample = |(cycle, t): &(usize, f64)| Sample {

@@ -35,11 +35,3 @@ pub(super) fn slope(evidence: &Evidence<'_>, candidate: &Candidate, most: f64) -
     let high = (best..COUNT).take_while(near).last().unwrap_or(best);
     Slope { value: grid[best], low: grid[low] - 0.5 * STEP, high: grid[high] + 0.5 * STEP }
 }
-
-impl Slope {
-    /// Whether the interval is so wide that it contains both slack and process.
-    #[must_use]
-    pub fn is_open(&self) -> bool {
-        self.low <= 0.0 && self.high >= 1.0
-    }
-}

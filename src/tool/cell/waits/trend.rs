@@ -35,7 +35,8 @@ pub fn trend(hours: &[f64], lengths: &[f64]) -> Option<Trend> {
     }
     // Kendall's S has the variance n (n − 1) (2 n + 5) / 18.
     let n = points.len() as f64;
-    let half = INTERVAL * (n * (n - 1.0) * (2.0 * n + 5.0) / 18.0).sqrt() / slopes.len() as f64 / 2.0;
+    let half =
+        INTERVAL * (n * (n - 1.0) * (2.0 * n + 5.0) / 18.0).sqrt() / slopes.len() as f64 / 2.0;
     Some(Trend {
         per_hour_s: quantile(&slopes, 0.5),
         low: quantile(&slopes, 0.5 - half),

@@ -153,8 +153,7 @@ struct Rival<'a> {
     slack: LogDensities,
     /// ln of the odds before the log is seen, against a reference that a machine sees.
     prior: f64,
-    /// Advantage over the robot's coming, and over process as a whole.
-    advantage: f64,
+    /// Advantage over process as a whole.
     over_process: f64,
     /// The best machine that answers in part: its advantage over the robot's coming, with its prior.
     partly: f64,
@@ -187,14 +186,16 @@ impl<'a> Comparison<'a> {
             let scale = (samples.median_after(candidate) / length).max(1.0).ln();
             let over = standing.iter().map(|of| evidence.advantage(&slack, of, MOST_OF_CYCLE));
             let over_process = over.fold(advantage, f64::min) + prior - request.ln() - scale;
-            let partly = PARTLY.into_iter().map(|b| {
+            // Of what no machine sees, none answers in part.
+            let is_seen = prior > UNSEEN_ODDS.ln();
+            let partly = PARTLY.into_iter().filter(|_| is_seen).map(|b| {
                 let of = evidence.counts_from(candidate, b);
                 let over_slack = evidence.advantage(&of, &slack, MOST_OF_CYCLE);
                 let over_answers = evidence.advantage(&of, &answers, MOST_OF_CYCLE);
                 over_slack.min(over_answers)
             });
             let partly = partly.fold(f64::NEG_INFINITY, f64::max) + prior + PARTLY_ODDS.ln();
-            Rival { index, candidate, slack, prior, advantage, over_process, partly }
+            Rival { index, candidate, slack, prior, over_process, partly }
         });
         let rivals: Vec<Rival<'a>> = rivals.collect();
         let ready = samples.samples.iter().filter(|sample| sample.at_once()).count();
@@ -263,10 +264,9 @@ impl<'a> Comparison<'a> {
 
     /// The latest reference that predicts about as well: only movements after it may use the slack.
     fn latest_like<'b>(&'b self, best: &'b Rival<'a>, decided: f64) -> &'b Rival<'a> {
-        let travel = |rival: &Rival<'_>| {
-            let times = rival.candidate.times.iter();
-            let came = self.evidence.came();
-            median(times.zip(came).filter_map(|(t, came)| Some(came - (*t)?)))
+        let later = |rival: &Rival<'_>| {
+            let pairs = rival.candidate.times.iter().zip(&best.candidate.times);
+            median(pairs.filter_map(|(t, of_best)| Some((*t)? - (*of_best)?)))
         };
         let is_like = |rival: &&Rival<'_>| {
             let worse = self.evidence.advantage(&best.slack, &rival.slack, MOST_OF_CYCLE);
@@ -274,22 +274,6 @@ impl<'a> Comparison<'a> {
             is_likely && worse < PROCESS_ODDS.ln()
         };
         let alike = self.rivals.iter().filter(is_like);
-        alike.min_by(|a, b| travel(a).total_cmp(&travel(b))).unwrap_or(best)
+        alike.max_by(|a, b| later(a).total_cmp(&later(b))).unwrap_or(best)
     }
-}
-
-#[cfg(test)]
-pub(super) fn show(shift: &Shift, samples: &Samples) {
-    let evidence = Evidence::new(shift, samples);
-    let of = Comparison::new(samples, &evidence);
-    println!("n {} zero {}", samples.samples.len(), samples.samples.iter().filter(|s| s.at_once()).count());
-    for c in samples.candidates.iter().filter(|c| c.stands) {
-        println!("stands {}", c.reference);
-    }
-    for r in &of.rivals {
-        let travel: Vec<f64> = r.candidate.times.iter().zip(&samples.samples).filter_map(|(t, s)| Some(s.came - (*t)?)).collect();
-        println!("{:50} prior {:.1} adv {:.1} free {:.1} over {:.1} partly {:.1} travel {:.3} +- {:.3}, M {:.3}", r.candidate.reference.to_string(), r.prior, r.advantage,
-            evidence.advantage(&r.slack, &of.answers, f64::INFINITY), r.over_process, r.partly, median(travel.iter().copied()), super::spread::deviation(&travel), samples.median_after(r.candidate));
-    }
-    println!("{:?}", of.verdict());
 }

@@ -20,6 +20,7 @@ mod simulation;
 mod source;
 mod standstill;
 mod summary;
+mod waits;
 mod ways;
 
 pub use campaign::campaign_report;
@@ -29,6 +30,7 @@ pub use identify::{Traces, identify_report};
 pub use page::ReportError;
 pub use placement::place_report;
 pub use simulation::simulate_report;
+pub use waits::waits_report;
 
 use tera::Context;
 

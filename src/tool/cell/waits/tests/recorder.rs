@@ -77,6 +77,12 @@ impl Recorder {
         self.t - 0.002
     }
 
+    /// A measured value changes.
+    pub(super) fn value(&mut self, signal: &str, value: f64) {
+        self.row(self.t, &format!(",,signal,{value},{signal}"));
+        self.t += 0.002;
+    }
+
     /// Waits for a signal that comes, or came, at `at`.
     pub(super) fn wait(&mut self, line: u32, signal: &str, at: f64) {
         self.row(self.t, &format!("Cell.mod,{line},wait,,{signal}"));
@@ -95,17 +101,23 @@ impl Recorder {
         self.text
     }
 
+    /// The log.
+    pub(super) fn log(self, name: &str) -> Log {
+        let recording = read(self.text().as_bytes()).expect("a log");
+        Log { name: name.to_owned(), recording }
+    }
+
     /// The verdict on each line.
     pub(super) fn verdicts(self) -> Vec<(u32, Verdict, Option<Reference>)> {
-        let text = self.text();
-        let recording = read(text.as_bytes()).expect("a log");
-        let shift = Shift::new(&[Log { name: "a.csv".to_owned(), recording }], None).expect("cycles");
+        let shift = Shift::new(&[self.log("a.csv")], None).expect("cycles");
         let all = samples(&shift);
-        all.iter().map(|of| {
-            let verdict = verdict(&shift, of);
-            let after = verdict.after.map(|index| of.candidates[index].reference.clone());
-            (of.key.place.line, verdict, after)
-        }).collect()
+        all.iter()
+            .map(|of| {
+                let verdict = verdict(&shift, of);
+                let after = verdict.after.map(|index| of.candidates[index].reference.clone());
+                (of.key.place.line, verdict, after)
+            })
+            .collect()
     }
 }
 

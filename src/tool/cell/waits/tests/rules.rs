@@ -1,7 +1,7 @@
 //! Each rule on a cell that shows it.
 
 use super::recorder::{Chance, Recorder};
-use crate::tool::cell::waits::{Kind, Level, Reason, Reference, Verdict, WaitKind};
+use crate::tool::cell::waits::{Kind, Level, Reason, Reference, Shift, Verdict, WaitKind, samples};
 
 /// A cell: after an operator (line 10) the robot grips (20), unloads a machine (30), clamps (40).
 struct Cell {
@@ -11,6 +11,8 @@ struct Cell {
     /// The machine's door in cycle i after the start in the cycle before and the robot's coming.
     door: fn(&mut Chance, usize, f64, f64) -> f64,
     hears: bool,
+    /// Whether the robot asks the door to open.
+    asks: bool,
 }
 
 type Found = (u32, Verdict, Option<Reference>);
@@ -30,6 +32,9 @@ fn run(cell: &Cell) -> Vec<Found> {
         let at = log.t + 0.3 + chance.normal(0.02);
         log.wait(20, "diGripped", at);
         log.travel(25, 5.0 + chance.normal(0.01));
+        if cell.asks {
+            log.output(29, "doOpen");
+        }
         let at = (cell.door)(&mut chance, i, started, log.t);
         log.wait(30, "diDoor", at);
         log.travel(35, 6.0 + chance.normal(0.01));
@@ -57,7 +62,7 @@ fn machine(chance: &mut Chance, _: usize, started: f64, _: f64) -> f64 {
 #[test]
 fn a_machine_that_was_started_in_the_cycle_before_is_slack() {
     for hears in [false, true] {
-        let verdicts = run(&Cell { cycles: 150, operator: 4.0, door: machine, hears });
+        let verdicts = run(&Cell { cycles: 150, operator: 4.0, door: machine, hears, asks: false });
         assert_eq!(kind(&verdicts, 30), SLACK, "{verdicts:#?}");
         let after = verdicts[2].2.as_ref().expect("a reference");
         assert_eq!(after.kind, Kind::Output("doStart".to_owned(), Level(1.0)));
@@ -70,7 +75,7 @@ fn a_machine_that_was_started_in_the_cycle_before_is_slack() {
 #[test]
 fn a_door_that_answers_the_robot_is_process() {
     let door = |chance: &mut Chance, _, _, came| came + 3.0 + chance.normal(0.3);
-    let verdicts = run(&Cell { cycles: 150, operator: 4.0, door, hears: false });
+    let verdicts = run(&Cell { cycles: 150, operator: 4.0, door, hears: false, asks: true });
     assert_eq!(kind(&verdicts, 30), PROCESS, "{verdicts:#?}");
 }
 
@@ -79,7 +84,7 @@ fn a_door_that_is_open_already_at_times_is_process() {
     let door = |chance: &mut Chance, _, _, came| {
         if chance.is(0.34) { came - 5.0 } else { came + 3.0 + chance.normal(0.3) }
     };
-    let verdicts = run(&Cell { cycles: 150, operator: 4.0, door, hears: false });
+    let verdicts = run(&Cell { cycles: 150, operator: 4.0, door, hears: false, asks: true });
     assert_eq!(kind(&verdicts, 30), PROCESS, "{verdicts:#?}");
 }
 
@@ -89,7 +94,7 @@ fn a_machine_that_answers_by_half_is_coupled() {
         let travel: f64 = came - started;
         started + 35.0 + 0.5 * (travel - 24.0) + chance.normal(0.3)
     };
-    let verdicts = run(&Cell { cycles: 150, operator: 4.0, door, hears: false });
+    let verdicts = run(&Cell { cycles: 150, operator: 4.0, door, hears: false, asks: false });
     assert_eq!(kind(&verdicts, 30), (WaitKind::Unknown, Reason::Coupled), "{verdicts:#?}");
     let slope = verdicts[2].1.slope.expect("a slope");
     assert!(slope.low > 0.3 && slope.high < 0.7, "{slope:?}");
@@ -98,15 +103,17 @@ fn a_machine_that_answers_by_half_is_coupled() {
 #[test]
 fn a_machine_with_a_long_tail_is_slack() {
     let door = |chance: &mut Chance, _, started, _| started + 32.0 + chance.normal(0.9).exp();
-    let verdicts = run(&Cell { cycles: 200, operator: 4.0, door, hears: false });
+    let verdicts = run(&Cell { cycles: 200, operator: 4.0, door, hears: false, asks: false });
     assert_eq!(kind(&verdicts, 30), SLACK, "{verdicts:#?}");
 }
 
 #[test]
 fn without_other_times_of_coming_the_log_cannot_tell() {
-    let verdicts = run(&Cell { cycles: 150, operator: 0.0, door: machine, hears: false });
+    let verdicts =
+        run(&Cell { cycles: 150, operator: 0.0, door: machine, hears: false, asks: false });
     assert_eq!(kind(&verdicts, 30), (WaitKind::Unknown, Reason::CannotTell), "{verdicts:#?}");
-    let verdicts = run(&Cell { cycles: 8, operator: 4.0, door: machine, hears: false });
+    let verdicts =
+        run(&Cell { cycles: 8, operator: 4.0, door: machine, hears: false, asks: false });
     assert_eq!(kind(&verdicts, 30), (WaitKind::Unknown, Reason::TooFew));
 }
 
@@ -178,4 +185,22 @@ fn stated_times_and_what_is_always_there_are_named() {
     let verdicts = log.verdicts();
     assert_eq!(kind(&verdicts, 6), (WaitKind::Process, Reason::Stated));
     assert_eq!(kind(&verdicts, 7), (WaitKind::Unknown, Reason::AlwaysThere));
+}
+
+#[test]
+fn a_measured_value_is_no_reference() {
+    let mut log = Recorder::new(0.001);
+    for i in 0..40 {
+        log.cycle();
+        for k in 0..30 {
+            log.value("aiForce", f64::from(i * 30 + k));
+        }
+        log.travel(5, 2.0);
+        let at = log.t + 1.0 + 0.05 * f64::from(i % 7);
+        log.wait(7, "diAir", at);
+    }
+    let log = log.log("a.csv");
+    let shift = Shift::new(&[log], None).expect("cycles");
+    let all = samples(&shift);
+    assert!(all[0].candidates.len() < 10, "{}", all[0].candidates.len());
 }
