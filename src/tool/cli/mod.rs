@@ -24,6 +24,7 @@ mod parse;
 mod place;
 mod predict;
 mod program_output;
+mod prove;
 mod refresh;
 mod robots;
 mod rule;
@@ -65,6 +66,7 @@ enum Command {
     Identify(Box<identify::IdentifyArgs>),
     Calibrate(Box<calibrate::CalibrateArgs>),
     Predict(predict::PredictArgs),
+    Prove(prove::ProveArgs),
     Diagnose(Box<diagnose::DiagnoseArgs>),
     Blind(blind::BlindArgs),
     Robots(robots::RobotsArgs),
@@ -90,6 +92,7 @@ pub fn command_line() -> ExitCode {
         Command::Identify(args) => identify::run(&args),
         Command::Calibrate(args) => calibrate::run(&args),
         Command::Predict(args) => predict::run(&args),
+        Command::Prove(args) => prove::run(&args),
         Command::Diagnose(args) => diagnose::run(&args),
         Command::Blind(args) => blind::run(&args),
         Command::Robots(args) => robots::run(&args),

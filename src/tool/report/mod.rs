@@ -10,6 +10,7 @@ mod mark;
 pub mod place;
 pub mod placement;
 mod plausible;
+pub mod prove;
 pub mod simulated;
 pub mod standstill;
 pub mod suggestions;

@@ -12,6 +12,7 @@ mod movements;
 mod page;
 mod placement;
 mod proof;
+mod prove;
 mod reliability;
 mod samples;
 mod segments;
@@ -26,6 +27,7 @@ pub use grades::grades_report;
 pub use identify::{Traces, identify_report};
 pub use page::ReportError;
 pub use placement::place_report;
+pub use prove::prove_report;
 pub use simulation::simulate_report;
 
 use tera::Context;
