@@ -3,6 +3,7 @@
 //!
 //! `cargo run --release --example prove_coverage -- 200`
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use joulepath::learn::log::{Channel, Log, Scan};
@@ -100,7 +101,8 @@ fn work(world: &World, cycle: &Cycle, degrees: f64) -> f64 {
     let total = plain + BASE_W * (MOTION_S + 1.2 + world.wait_s[0]);
     let saved = if cycle.is_after { world.saving * total } else { 0.0 };
     // What the slower motion takes of the base load is in the saving, unless the waits make up for it.
-    let longer = if cycle.is_after && !world.has_slack { MOTION_S * (world.slower - 1.0) } else { 0.0 };
+    let longer =
+        if cycle.is_after && !world.has_slack { MOTION_S * (world.slower - 1.0) } else { 0.0 };
     plain - saved - BASE_W * longer - 12.0 * (degrees - 30.0)
 }
 
@@ -123,7 +125,8 @@ fn log(world: &World, side: usize, cycles: &[Cycle], random: &mut fastrand::Rng)
             let t = row as f64 / RATE;
             let u = (t - now) / motion;
             // Mean 1 over the motion.
-            let shape = 1.0 - 0.6 * (9.0 * std::f64::consts::TAU * u).cos() * (1.0 - u)
+            let shape = 1.0
+                - 0.6 * (9.0 * std::f64::consts::TAU * u).cos() * (1.0 - u)
                 - 0.4 * (2.0 * std::f64::consts::TAU * u).cos();
             let power = BASE_W + if u < 1.0 { level * shape } else { 0.0 };
             let power = gain * power + 3.0 * normal(random);
@@ -212,7 +215,9 @@ fn main() {
          |---|---|---|---|---|---|---|---|---|\n",
     );
     for world in worlds() {
-        let (mut holds, mut saves, mut doubts, mut sum, mut width, mut plain) = (0, 0, 0, 0.0, 0.0, 0);
+        let (mut holds, mut saves, mut doubts, mut sum, mut width, mut plain) =
+            (0, 0, 0, 0.0, 0.0, 0);
+        let mut names: BTreeMap<&str, u64> = BTreeMap::new();
         for seed in 0..count {
             let proof = campaign(&world, 1000 + seed);
             let [low, high] = proof.saving.interval.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
@@ -221,13 +226,16 @@ fn main() {
             plain += u64::from((sharp..=blunt).contains(&world.saving));
             saves += u64::from(proof.verdict == Verdict::Saves);
             doubts += u64::from(!proof.doubts.is_empty());
+            for doubt in &proof.doubts {
+                *names.entry(doubt.name).or_insert(0) += 1;
+            }
             sum += 100.0 * proof.saving.value;
             width += 50.0 * (high - low);
         }
         let share = |n: u64| 100.0 * n as f64 / count as f64;
         let _ = writeln!(
             out,
-            "| {} | {:.0} | {count} | {:.1} | {:.1} | {:.2} | {:.2} | {:.1} | {:.1} |",
+            "| {} | {:.0} | {count} | {:.1} | {:.1} | {:.2} | {:.2} | {:.1} {} | {:.1} |",
             world.name,
             100.0 * world.saving,
             share(holds),
@@ -235,6 +243,7 @@ fn main() {
             sum / count as f64,
             width / count as f64,
             share(doubts),
+            names.iter().map(|(name, n)| format!("{name} {n}")).collect::<Vec<_>>().join(", "),
             share(plain),
         );
     }

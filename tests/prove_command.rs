@@ -142,9 +142,12 @@ fn a_saving_is_proved_with_its_interval() {
     let [before, after] = ["before.csv", "after.csv"].map(|name| campaign.folder.path().join(name));
     let page = campaign.folder.path().join("proof.html").display().to_string();
     let [before, after] = [before, after].map(|path| path.display().to_string());
-    let args = ["prove", "--before", &before, "--after", &after, "--report", &page, "--promised", "9"];
+    let args =
+        ["prove", "--before", &before, "--after", &after, "--report", &page, "--promised", "9"];
     let text = stdout(&run(&args));
-    for expected in ["saves", "per part", "baseline period", "measurement boundary", "diagnose", "points"] {
+    for expected in
+        ["saves", "per part", "baseline period", "measurement boundary", "diagnose", "points"]
+    {
         assert!(text.contains(expected), "{expected}: {text}");
     }
     let html = fs::read_to_string(&page).unwrap();
@@ -162,7 +165,8 @@ fn nothing_changed_is_no_saving() {
     assert_eq!(proof["verdict"], "no_difference", "{proof:#}");
     let worse = campaign.proof(&Made::new(3), &Made::new(4).saving(-0.06));
     assert_eq!(worse["verdict"], "costs", "{worse:#}");
-    let [before, after] = [campaign.log("a.csv", &Made::new(3)), campaign.log("b.csv", &Made::new(4))];
+    let [before, after] =
+        [campaign.log("a.csv", &Made::new(3)), campaign.log("b.csv", &Made::new(4))];
     let strict = joulepath(&["prove", "--before", &before, "--after", &after, "--strict"]);
     assert_eq!(strict.status.code(), Some(1));
     let few = Made { cycles: 3, ..Made::new(5) };
@@ -174,7 +178,8 @@ fn nothing_changed_is_no_saving() {
 fn the_power_analysis_stands_before_the_campaign() {
     let campaign = Campaign::new();
     let before = campaign.log("before.csv", &Made::new(7));
-    let plan = json(&["prove", "--before", &before, "--effect", "1%", "--format", "json", "--quiet"]);
+    let plan =
+        json(&["prove", "--before", &before, "--effect", "1%", "--format", "json", "--quiet"]);
     assert!(plan["verdict"].is_null());
     // The work varies by 0.04/√6; it is 3000 of 5400 J.
     let deviation = 0.04 / 6.0_f64.sqrt() * 3000.0 / 5400.0;
@@ -211,7 +216,8 @@ fn only_what_both_sides_made_is_compared() {
     let proof = campaign.proof(&of(12, "A"), &of(13, "A").saving(0.05));
     assert_eq!(proof["strata"].as_array().unwrap().len(), 2);
     assert!(mentions(&proof, "part A1"), "{proof:#}");
-    let [before, after] = [campaign.log("a.csv", &of(12, "A")), campaign.log("b.csv", &of(13, "B"))];
+    let [before, after] =
+        [campaign.log("a.csv", &of(12, "A")), campaign.log("b.csv", &of(13, "B"))];
     let message = refused(&["prove", "--before", &before, "--after", &after], "same parts");
     assert!(message.contains("part A0") && message.contains("part B1"), "{message}");
 }
@@ -302,12 +308,19 @@ fn joints_are_the_measure_without_power() {
                 noise = 1.0 + 0.02 * (random.f64() - 0.5);
             }
             let rate = (std::f64::consts::TAU * phase).sin();
-            let _ = writeln!(out, "{:.3},{},{rate},{}", 0.02 * f64::from(row), row / 200, factor * noise * 40.0 * rate);
+            let _ = writeln!(
+                out,
+                "{:.3},{},{rate},{}",
+                0.02 * f64::from(row),
+                row / 200,
+                factor * noise * 40.0 * rate
+            );
         }
         out
     };
     let [before, after] = [text(1, 1.0), text(2, 0.95)];
-    let [b, a] = [written(&campaign.folder, "b.csv", before), written(&campaign.folder, "a.csv", after)];
+    let [b, a] =
+        [written(&campaign.folder, "b.csv", before), written(&campaign.folder, "a.csv", after)];
     let proof = json(&["prove", "--before", &b, "--after", &a, "--format", "json", "--quiet"]);
     assert_eq!(proof["verdict"], "saves", "{proof:#}");
     assert!((percent(&proof, "value") - 5.0).abs() < 0.5, "{proof:#}");
@@ -389,12 +402,15 @@ fn a_truncated_log_loses_its_last_cycle_only() {
         .lines()
         .enumerate()
         .map(|(row, line)| match line.split_once(',') {
-            Some((t, rest)) if row > 1000 => format!("{:.3},{rest}\n", t.parse::<f64>().unwrap() + 3600.0),
+            Some((t, rest)) if row > 1000 => {
+                format!("{:.3},{rest}\n", t.parse::<f64>().unwrap() + 3600.0)
+            }
             _ => format!("{line}\n"),
         })
         .collect();
     let spring = written(&campaign.folder, "spring.csv", spring);
-    let proof = json(&["prove", "--before", &whole, "--after", &spring, "--format", "json", "--quiet"]);
+    let proof =
+        json(&["prove", "--before", &whole, "--after", &spring, "--format", "json", "--quiet"]);
     assert!(mentions(&proof, "summer time begins"), "{proof:#}");
     assert_eq!(proof["cycles"]["after"], 29, "{proof:#}");
 }

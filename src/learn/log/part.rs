@@ -12,7 +12,8 @@ const BITS: u64 = (1 << 52) - 1;
 pub(super) fn part_number(text: &str, notation: Notation) -> f64 {
     let own = number(text, notation).ok();
     own.unwrap_or_else(|| {
-        let hash = text.bytes().fold(BASIS, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(PRIME));
+        let hash =
+            text.bytes().fold(BASIS, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(PRIME));
         -1.0 - (hash & BITS) as f64
     })
 }

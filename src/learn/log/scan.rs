@@ -124,7 +124,9 @@ mod tests {
         assert_eq!((one.alternates, one.back), (false, None));
         assert_eq!(one.parts.len(), 1);
         assert_eq!(one.parts[0].1, "A");
-        let two = scanned((0..200).map(|i| format!("{},{},7", i / 2, smooth(i) + f64::from(i % 2 * 300))));
+        let two = scanned(
+            (0..200).map(|i| format!("{},{},7", i / 2, smooth(i) + f64::from(i % 2 * 300))),
+        );
         assert!(two.alternates);
         let night = scanned((0..200).map(|i| format!("{},{},7", (86_350 + i) % 86_400, smooth(i))));
         assert_eq!(night.back, Some((52, 86_399.0)));

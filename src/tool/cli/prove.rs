@@ -70,10 +70,7 @@ pub(super) fn run(args: &ProveArgs) -> anyhow::Result<ExitCode> {
     let settings = Settings { effect, promised };
     let map = ColumnMap::parse(&args.map)?.with_products();
     let paths = || args.before.iter().chain(&args.after);
-    output::refuse_inputs(
-        &[("--report", args.report.as_ref())],
-        paths().map(PathBuf::as_path),
-    )?;
+    output::refuse_inputs(&[("--report", args.report.as_ref())], paths().map(PathBuf::as_path))?;
     for (index, path) in paths().enumerate() {
         if paths().take(index).any(|other| output::is_same_file(other, path)) {
             bail!("{}: this log is given twice; give each log once", path.display());

@@ -103,9 +103,7 @@ fn left_out(of: &LeftOut) -> Value {
 }
 
 fn power_analysis(plan: &[(f64, usize)]) -> Vec<Value> {
-    let row = |(effect, cycles): &(f64, usize)| {
-        json!({ "effect_percent": 100.0 * effect, "cycles_each_side": cycles })
-    };
+    let row = |(effect, cycles): &(f64, usize)| json!({ "effect_percent": 100.0 * effect, "cycles_each_side": cycles });
     plan.iter().map(row).collect()
 }
 
@@ -158,7 +156,9 @@ pub fn sentence(proof: &Proof) -> String {
     };
     let what = match proof.verdict {
         Verdict::Saves => format!("saves {value:.1} % ({low:.1} to {high:.1}) per part"),
-        Verdict::Costs => format!("costs {:.1} % more ({:.1} to {:.1}) per part", -value, -high, -low),
+        Verdict::Costs => {
+            format!("costs {:.1} % more ({:.1} to {:.1}) per part", -value, -high, -low)
+        }
         Verdict::NoDifference => {
             format!("no difference is shown: {value:.1} % ({low:.1} to {high:.1}) per part")
         }
@@ -188,18 +188,18 @@ fn of_time(proof: &Proof) -> String {
 }
 
 fn plan_sentence(plan: &Plan) -> String {
-    format!(
-        "{} cycles each side will show {:.1} %",
-        plan.needed,
-        100.0 * plan.settings.effect
-    )
+    format!("{} cycles each side will show {:.1} %", plan.needed, 100.0 * plan.settings.effect)
 }
 
 /// The terms of IPMVP option B and ISO 50015 with what stands for them here.
 pub fn terms(proof: &Proof) -> Vec<(&'static str, String)> {
     let boundary = match proof.measure {
-        Measure::Cabinet => "the supply of the robot's cabinet (retrofit isolation, all parameters measured: option B)",
-        Measure::Joints => "the joints: positive mechanical work, without drives and base load (option B)",
+        Measure::Cabinet => {
+            "the supply of the robot's cabinet (retrofit isolation, all parameters measured: option B)"
+        }
+        Measure::Joints => {
+            "the joints: positive mechanical work, without drives and base load (option B)"
+        }
     };
     let program = |side: usize| {
         proof.programs[side].as_ref().map_or_else(String::new, |hash| format!(", program {hash}"))
@@ -215,7 +215,8 @@ pub fn terms(proof: &Proof) -> Vec<(&'static str, String)> {
         })
         .collect();
     let doubts: Vec<&str> = proof.doubts.iter().map(|doubt| doubt.name).collect();
-    let listed = |items: Vec<String>| if items.is_empty() { "none".to_owned() } else { items.join("; ") };
+    let listed =
+        |items: Vec<String>| if items.is_empty() { "none".to_owned() } else { items.join("; ") };
     vec![
         ("measurement boundary", boundary.to_owned()),
         ("baseline period", format!("{} cycles{}", proof.cycles[0], program(0))),
@@ -224,7 +225,8 @@ pub fn terms(proof: &Proof) -> Vec<(&'static str, String)> {
         ("reporting-period energy, adjusted", format!("{:.1} J per part", proof.energy_j[1])),
         ("routine adjustments", listed(routine)),
         ("non-routine adjustments", {
-            let items = doubts.into_iter().map(|name| format!("{name}: the interval is wider")).collect();
+            let items =
+                doubts.into_iter().map(|name| format!("{name}: the interval is wider")).collect();
             listed(items)
         }),
         ("static factors", listed(proof.strata.iter().map(|of| of.name.clone()).collect())),
@@ -281,7 +283,12 @@ pub(super) fn remarks(proof: &Proof, command: &str) -> Vec<String> {
     let mut remarks: Vec<String> = proof.doubts.iter().map(|doubt| doubt.text.clone()).collect();
     for left in &proof.left_out {
         let cycles = if left.count == 1 { "cycle" } else { "cycles" };
-        remarks.push(format!("{}: {} {cycles} left out: {}", side(left.period), left.count, left.why));
+        remarks.push(format!(
+            "{}: {} {cycles} left out: {}",
+            side(left.period),
+            left.count,
+            left.why
+        ));
     }
     if let Some(saving) = proof.saving_with_faults {
         remarks.push(format!(

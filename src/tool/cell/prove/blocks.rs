@@ -41,18 +41,44 @@ pub(super) fn block_length(x: &[f64]) -> usize {
 /// n times the variance of the mean of a stationary series: by overlapping circular blocks, or by an
 /// autoregression of first order if that says more.
 pub(super) fn long_run_variance(x: &[f64], length: usize) -> f64 {
-    let n = x.len();
-    if n < 2 {
+    with_memory(x, length, memory([x]))
+}
+
+/// The same for both sides, which have one memory: what one cycle has of the last one is of the robot, not of
+/// the period.
+pub(super) fn long_run_variances(sides: [&[f64]; 2], lengths: [usize; 2]) -> [f64; 2] {
+    let phi = memory(sides);
+    [0, 1].map(|side| with_memory(sides[side], lengths[side], phi))
+}
+
+fn with_memory(x: &[f64], length: usize, phi: f64) -> f64 {
+    let n = x.len() as f64;
+    if n < 2.0 {
         return 0.0;
     }
-    let r = autocovariances(x, 1);
-    let freedom = n as f64 / (n as f64 - 1.0);
-    let phi = if r[0] > 0.0 { r[1] / r[0] } else { 0.0 };
-    // The estimate of φ is too small by about (1 + 3 φ)/n, which matters if there is a correlation.
-    let is_seen = phi > 1.0 / (n as f64).sqrt();
-    let phi = if is_seen { (phi + (1.0 + 3.0 * phi) / n as f64).clamp(0.0, 0.95) } else { 0.0 };
-    let autoregressive = r[0] * freedom * (1.0 + phi) / (1.0 - phi);
-    autoregressive.max(by_blocks(x, length))
+    let plain = autocovariances(x, 0)[0] * n / (n - 1.0);
+    (plain * (1.0 + phi) / (1.0 - phi)).max(by_blocks(x, length))
+}
+
+/// The coefficient of an autoregression of first order of series, if it is seen.
+fn memory<const N: usize>(series: [&[f64]; N]) -> f64 {
+    let (mut zero, mut one, mut count, mut bias) = (0.0, 0.0, 0.0, 0.0);
+    for x in series.iter().filter(|x| x.len() > 2) {
+        let n = x.len() as f64;
+        let r = autocovariances(x, 1);
+        zero += n * r[0];
+        one += n * r[1];
+        bias += r[0];
+        count += n;
+    }
+    if zero <= 0.0 {
+        return 0.0;
+    }
+    let (phi, bias) = (one / zero, bias / zero);
+    // The estimate is too small by (1 + 3 φ)/n, where a trend has been adjusted for by (2 + 4 φ)/n (M. G. Kendall).
+    let corrected = |constant: f64, slope: f64| phi + bias * (constant + slope * phi.max(0.0));
+    let is_seen = corrected(1.0, 3.0) * f64::sqrt(count) > 1.0;
+    if is_seen { corrected(2.0, 4.0).min(0.95) } else { 0.0 }
 }
 
 /// The same by overlapping circular blocks alone.
@@ -75,7 +101,8 @@ pub(super) fn drawn_variance(x: &[f64], length: usize) -> f64 {
     let mean = x.iter().sum::<f64>() / n.max(1) as f64;
     let blocks = x.chunks(length);
     let count = n.div_ceil(length) as f64;
-    let squares: f64 = blocks.map(|block| block.iter().map(|x| x - mean).sum::<f64>().powi(2)).sum();
+    let squares: f64 =
+        blocks.map(|block| block.iter().map(|x| x - mean).sum::<f64>().powi(2)).sum();
     squares / n.max(1) as f64 * count / (count - 1.0).max(1.0)
 }
 
@@ -86,7 +113,9 @@ fn autocovariances(x: &[f64], most: usize) -> Vec<f64> {
     // Lags beyond this are not looked at: the series is long, and its memory short.
     const LAGS: usize = 400;
     let most = most.min(n.saturating_sub(1)).min(LAGS);
-    let of = |lag: usize| (lag..n).map(|i| (x[i] - mean) * (x[i - lag] - mean)).sum::<f64>() / n.max(1) as f64;
+    let of = |lag: usize| {
+        (lag..n).map(|i| (x[i] - mean) * (x[i - lag] - mean)).sum::<f64>() / n.max(1) as f64
+    };
     (0..=most).map(of).collect()
 }
 

@@ -1,7 +1,7 @@
 //! The whole way from logs to a verdict.
 
 use super::blocks::{block_length, long_run_variance};
-use super::doubt::{Doubt, drift, meter, other_work, step};
+use super::doubt::{Doubt, Turned, drift, meter, other_work, step};
 use super::error::ProveError;
 use super::estimate::{Estimate, estimate};
 use super::interval::{Uncertainty, uncertainty};
@@ -44,12 +44,12 @@ pub fn prove(before: &Side, after: &Side, settings: Settings) -> Result<Proof, P
     let programs = [before.program()?, after.program()?];
     let logs: Vec<&PowerLog> = before.logs.iter().chain(&after.logs).collect();
     let measure = measure(&logs)?;
-    let mut measured = [
-        measured(before, Period::Before, measure)?,
-        measured(after, Period::After, measure)?,
-    ];
+    let mut measured =
+        [measured(before, Period::Before, measure)?, measured(after, Period::After, measure)?];
     check_levels(&measured)?;
     let levels = rest(&mut measured);
+    let is_by_power = measured.iter().any(|side| side.by_power);
+    let turned = if is_by_power { Turned::Anyhow } else { Turned::Alike };
     let mut notes = notes(sides, &programs);
     let [from_before, from_after] = measured;
     let mut left_out = [from_before.left_out, from_after.left_out].concat();
@@ -75,7 +75,7 @@ pub fn prove(before: &Side, after: &Side, settings: Settings) -> Result<Proof, P
     })?;
     let is_enough = sizes.iter().all(|n| *n >= FEWEST);
     let uncertain = is_enough.then(|| uncertainty(slices, names.len(), prior, &of));
-    let doubts = doubts(&of, &units, apart(sides, &units));
+    let doubts = doubts(&of, &units, apart(sides, &units), turned);
     let statistical = uncertain.as_ref().map(|of| of.interval);
     let interval = statistical.map(|interval| widened(interval, &doubts));
     let long_run = uncertain.as_ref().map_or_else(
@@ -216,7 +216,10 @@ fn notes(sides: [&Side; 2], programs: &[Option<String>; 2]) -> Vec<String> {
     if let [Some(first), Some(last)] = [dates[0].first(), dates[1].last()]
         && last < first
     {
-        notes.push("the logs of --after were recorded before those of --before: are they swapped?".to_owned());
+        notes.push(
+            "the logs of --after were recorded before those of --before: are they swapped?"
+                .to_owned(),
+        );
     }
     for (period, side) in [Period::Before, Period::After].into_iter().zip(sides) {
         let lost: u64 = side.events.iter().map(|of| of.recording.lost).sum();
@@ -241,20 +244,27 @@ fn apart(sides: [&Side; 2], units: &[Vec<(usize, Unit)>; 2]) -> f64 {
     }
 }
 
-fn doubts(of: &Estimate, units: &[Vec<(usize, Unit)>; 2], apart: f64) -> Vec<Doubt> {
+fn doubts(
+    of: &Estimate,
+    units: &[Vec<(usize, Unit)>; 2],
+    apart: f64,
+    turned: Turned,
+) -> Vec<Doubt> {
     let rest = [0, 1].map(|side: usize| {
         units[side].iter().filter_map(|(_, unit)| unit.rest_w).collect::<Vec<f64>>()
     });
-    let times = [0, 1].map(|side: usize| units[side].iter().map(|(_, unit)| unit.t).collect::<Vec<f64>>());
-    let courses = [0, 1]
-        .map(|side: usize| units[side].iter().map(|(_, unit)| unit.course.as_slice()).collect::<Vec<_>>());
+    let times =
+        [0, 1].map(|side: usize| units[side].iter().map(|(_, unit)| unit.t).collect::<Vec<f64>>());
+    let courses = [0, 1].map(|side: usize| {
+        units[side].iter().map(|(_, unit)| unit.course.as_slice()).collect::<Vec<_>>()
+    });
     let found = [
         meter([&rest[0], &rest[1]], of.saving),
         drift(of, [&times[0], &times[1]], apart),
         step(&of.residual[0], 0, of.saving),
         step(&of.residual[1], 1, of.saving),
         swapped(of),
-        other_work([&courses[0], &courses[1]], of.duration),
+        other_work([&courses[0], &courses[1]], of.duration, turned),
     ];
     found.into_iter().flatten().collect()
 }
@@ -263,7 +273,11 @@ fn doubts(of: &Estimate, units: &[Vec<(usize, Unit)>; 2], apart: f64) -> Vec<Dou
 fn widened([low, high]: [f64; 2], doubts: &[Doubt]) -> [f64; 2] {
     let most = |end: usize| doubts.iter().map(|doubt| doubt.widens[end]).fold(0.0, f64::max);
     let (low, high) = (low - most(0), high + most(1));
-    if doubts.iter().any(|doubt| doubt.withholds) { [low.min(0.0), high.max(0.0)] } else { [low, high] }
+    if doubts.iter().any(|doubt| doubt.withholds) {
+        [low.min(0.0), high.max(0.0)]
+    } else {
+        [low, high]
+    }
 }
 
 fn verdict(interval: Option<[f64; 2]>, cycles: [usize; 2], needed: usize) -> Verdict {

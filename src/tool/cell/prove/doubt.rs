@@ -32,11 +32,22 @@ const STEADY: f64 = 0.85;
 /// Change of the duration that no retrofit makes without being asked, share.
 const LONGER: f64 = 0.15;
 
-/// The mean of a series and its standard error.
+/// The mean of a series and its standard error; a trend is no noise of it.
 fn mean_and_error(x: &[f64]) -> [f64; 2] {
     let n = x.len() as f64;
     let mean = x.iter().sum::<f64>() / n;
-    [mean, (long_run_variance(x, block_length(x)) / n).sqrt()]
+    let middle = 0.5 * (n - 1.0);
+    let (mut squares, mut product) = (0.0, 0.0);
+    for (i, x) in x.iter().enumerate() {
+        squares += (i as f64 - middle).powi(2);
+        product += (i as f64 - middle) * (x - mean);
+    }
+    let left: Vec<f64> = x
+        .iter()
+        .enumerate()
+        .map(|(i, x)| x - mean - product / squares * (i as f64 - middle))
+        .collect();
+    [mean, (long_run_variance(&left, block_length(&left)) / n).sqrt()]
 }
 
 /// The power at rest of the cycles of both sides, W: a meter with another gain shows another one.
@@ -147,9 +158,22 @@ pub(super) fn step(y: &[f64], side: usize, saving: f64) -> Option<Doubt> {
     })
 }
 
+/// Where cycles begin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Turned {
+    /// At the same place of the work on both sides.
+    Alike,
+    /// Wherever the power was distinctive.
+    Anyhow,
+}
+
 /// The mean courses of the power over a cycle, and the mean durations: other work has others. Each side
-/// has its cycles in the order of time.
-pub(super) fn other_work(courses: [&[&[f64]]; 2], duration: [f64; 2]) -> Option<Doubt> {
+/// has its cycles in the order of time; `turned`: a cycle may begin at another place on each side.
+pub(super) fn other_work(
+    courses: [&[&[f64]]; 2],
+    duration: [f64; 2],
+    turned: Turned,
+) -> Option<Doubt> {
     let longer = duration[1] / duration[0] - 1.0;
     let mean = |courses: &[&[f64]]| -> Vec<f64> {
         let points = courses.first().map_or(0, |course| course.len());
@@ -160,7 +184,13 @@ pub(super) fn other_work(courses: [&[&[f64]]; 2], duration: [f64; 2]) -> Option<
         let (a, b) = courses.split_at(courses.len() / 2);
         !a.is_empty() && correlation(&mean(a), &mean(b)) > STEADY
     });
-    let alike = correlation(&mean(courses[0]), &mean(courses[1]));
+    let [before, mut after] = courses.map(mean);
+    let turns = if turned == Turned::Anyhow { after.len() } else { 1 };
+    let mut alike = f64::NEG_INFINITY;
+    for _ in 0..turns {
+        alike = alike.max(correlation(&before, &after));
+        after.rotate_left(1);
+    }
     let text = if steady && alike < OTHER {
         format!(
             "the course of the power over a cycle is another one (correlation {alike:.2}): another product or \

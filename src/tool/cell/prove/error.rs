@@ -87,7 +87,9 @@ pub enum ProveError {
         line: u64,
     },
     /// Many rows cannot be used.
-    #[error("{file}: line {line}: {rejected} of {rows} rows cannot be used; the first one: {reason}")]
+    #[error(
+        "{file}: line {line}: {rejected} of {rows} rows cannot be used; the first one: {reason}"
+    )]
     Corrupt {
         /// The log.
         file: String,

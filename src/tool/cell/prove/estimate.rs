@@ -51,7 +51,8 @@ pub(super) struct Estimate {
     pub(super) influence: [Vec<f64>; 2],
     /// The same for the difference of the durations, s.
     pub(super) influence_s: [Vec<f64>; 2],
-    /// What each cycle differs from its stratum by after adjustment, as a share of the energy before.
+    /// What each cycle differs from its stratum by at equal time and temperature, as a share of the energy
+    /// before.
     pub(super) residual: [Vec<f64>; 2],
     /// Weight of each stratum; their sum is 1.
     pub(super) weights: Vec<f64>,
@@ -93,7 +94,8 @@ pub(super) fn estimate(sides: [&[Point]; 2], strata: usize, prior: Prior) -> Opt
         }
         sums.into_iter().map(Sums::means).collect::<Vec<Sums>>()
     });
-    let harmonic = |(a, b): (&Sums, &Sums)| if a.n > 0.0 && b.n > 0.0 { a.n * b.n / (a.n + b.n) } else { 0.0 };
+    let harmonic =
+        |(a, b): (&Sums, &Sums)| if a.n > 0.0 && b.n > 0.0 { a.n * b.n / (a.n + b.n) } else { 0.0 };
     let weights: Vec<f64> = means[0].iter().zip(&means[1]).map(harmonic).collect();
     let total: f64 = weights.iter().sum();
     if total <= 0.0 {
@@ -127,15 +129,16 @@ pub(super) fn estimate(sides: [&[Point]; 2], strata: usize, prior: Prior) -> Opt
             let share = weights[point.stratum] * size / mean.n.max(1.0);
             let late = point.duration - mean.duration;
             let foreign = of_duration * late + of_motion * (point.motion - mean.motion);
-            let circumstances = standing * foreign + thermal * (point.temperature - mean.temperature);
+            let warm = thermal * (point.temperature - mean.temperature);
+            let circumstances = standing * foreign + warm;
             let energy = point.energy - mean.energy;
-            let residual = (energy - circumstances) / before;
+            let residual = (energy - standing * late - warm) / before;
             match side {
                 0 => {
                     let influence = share * ((1.0 - saving) * energy - circumstances) / before;
                     [influence, -share * late, residual]
                 }
-                _ => [-share * residual, share * late, residual],
+                _ => [-share * (energy - circumstances) / before, share * late, residual],
             }
         };
         let mut all = [Vec::new(), Vec::new(), Vec::new()];
@@ -188,7 +191,8 @@ fn slopes(sides: [&[Point]; 2], means: &[Vec<Sums>; 2], prior: Prior) -> Slopes 
     for (points, means) in sides.iter().zip(means) {
         for point in *points {
             let mean = means[point.stratum];
-            let x = Vector2::new(point.duration - mean.duration, point.temperature - mean.temperature);
+            let x =
+                Vector2::new(point.duration - mean.duration, point.temperature - mean.temperature);
             let y = point.energy - mean.energy;
             normal += x * x.transpose();
             right += x * y;
@@ -210,7 +214,11 @@ fn slopes(sides: [&[Point]; 2], means: &[Vec<Sums>; 2], prior: Prior) -> Slopes 
     let mut covariance = Matrix2::zeros();
     // The prior's weight depends on the scatter that the slopes leave.
     for _ in 0..3 {
-        let weight = if prior.sd > 0.0 { variance / prior.sd.powi(2) } else { 1e12 * (1.0 + normal[(0, 0)]) };
+        let weight = if prior.sd > 0.0 {
+            variance / prior.sd.powi(2)
+        } else {
+            1e12 * (1.0 + normal[(0, 0)])
+        };
         let mut informed = normal;
         informed[(0, 0)] += weight;
         let target = right + Vector2::new(weight * prior.mean, 0.0);

@@ -1,7 +1,7 @@
 //! Intervals by a studentised circular block bootstrap: blocks of successive cycles are drawn on each side,
 //! and the whole estimate, adjustments included, is made again.
 
-use super::blocks::{block_length, drawn_variance, long_run_variance};
+use super::blocks::{block_length, drawn_variance, long_run_variances};
 use super::estimate::{Estimate, Point, Prior, estimate};
 
 /// Number of resamples, and their seed: the same logs give the same interval.
@@ -12,6 +12,10 @@ const LEVEL: f64 = 0.025;
 const BOUND: f64 = 0.05;
 /// Quantiles of the normal distribution at these levels.
 const NORMAL: f64 = 1.96;
+/// How Student's quantile exceeds the normal one, times the degrees of freedom.
+const STUDENT: f64 = 2.4;
+/// What no meter repeats better than from one period to another, share.
+pub(super) const REPEATS: f64 = 0.002;
 const NORMAL_BOUND: f64 = 1.645;
 
 /// What is uncertain about an estimate.
@@ -38,14 +42,14 @@ pub(super) fn uncertainty(
     prior: Prior,
     of: &Estimate,
 ) -> Uncertainty {
-    let blocks = [0, 1].map(|side| {
-        block_length(&of.influence[side]).max(block_length(&of.influence_s[side]))
-    });
+    let blocks = [0, 1]
+        .map(|side| block_length(&of.influence[side]).max(block_length(&of.influence_s[side])));
     let sizes = sides.map(|points| points.len() as f64);
-    let long_run = [0, 1].map(|side| long_run_variance(&of.influence[side], blocks[side]));
-    let [of_mean, of_time] = [&of.influence, &of.influence_s].map(|influence| {
-        (0..2).map(|side| long_run_variance(&influence[side], blocks[side]) / sizes[side]).sum::<f64>()
-    });
+    let variances =
+        |influence: &[Vec<f64>; 2]| long_run_variances([&influence[0], &influence[1]], blocks);
+    let long_run = variances(&of.influence);
+    let of_sides = |long_run: [f64; 2]| long_run[0] / sizes[0] + long_run[1] / sizes[1];
+    let (of_mean, of_time) = (of_sides(long_run), of_sides(variances(&of.influence_s)));
     // The slopes have the memory of the cycles, too.
     let memory = memory(of, &long_run);
     let error = (of_mean + memory * of.slope_variance).sqrt();
@@ -72,10 +76,16 @@ pub(super) fn uncertainty(
             times.push((again.duration[1] - again.duration[0] - longer) / error_s);
         }
     }
+    let plain = |x: &Vec<f64>| x.iter().map(|x| x * x).sum::<f64>();
+    let plain: f64 = of.influence.iter().map(plain).sum();
+    let all: f64 = (0..2).map(|side| sizes[side] * long_run[side]).sum();
+    let freedom = ((sizes[0] + sizes[1]) * plain / all.max(f64::MIN_POSITIVE) - 2.0).max(2.0);
+    let least = NORMAL + STUDENT / freedom;
+    let error = error.hypot(REPEATS);
     let [low, high] = [1.0 - LEVEL, LEVEL].map(|level| quantile(&mut savings, level));
     // Tails of the resamples that are lighter than normal ones come from their small number of values.
-    let low = low.unwrap_or(NORMAL).max(NORMAL);
-    let high = high.unwrap_or(-NORMAL).min(-NORMAL);
+    let low = low.unwrap_or(least).max(least);
+    let high = high.unwrap_or(-least).min(-least);
     let bound = quantile(&mut times, BOUND).unwrap_or(-NORMAL_BOUND).min(-NORMAL_BOUND);
     Uncertainty {
         interval: [of.saving - low * error, of.saving - high * error],

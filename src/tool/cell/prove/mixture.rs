@@ -6,7 +6,7 @@ use super::estimate::Estimate;
 
 /// Twice the logarithm of the likelihoods' ratio from which on strangers are taken as seen: two shares,
 /// which are 0 at the edge of their range.
-const SEEN: f64 = 14.0;
+const SEEN: f64 = 8.0;
 /// Least distance of the levels, in their standard deviations.
 const APART: f64 = 2.0;
 /// Steps of the expectation maximisation.
@@ -43,6 +43,9 @@ pub(super) fn swapped(of: &Estimate) -> Option<Doubt> {
     let starts = [([0.0, -saving], 0.15), (quarters, 0.4), ([quarters[1], quarters[0]], 0.4)];
     let fits = starts.map(|(levels, share)| fit(&sides, levels, share, squares / n));
     let best = fits.into_iter().max_by(|a, b| a.likelihood.total_cmp(&b.likelihood))?;
+    // The levels have no names: fewer strangers are more likely than more.
+    let is_turned = best.strangers.iter().sum::<f64>() > 1.0;
+    let strangers = best.strangers.map(|share| if is_turned { 1.0 - share } else { share });
     let distance = best.levels[0] - best.levels[1];
     let is_seen = 2.0 * (best.likelihood - plain) > SEEN
         && distance.abs() > APART * best.variance.sqrt()
@@ -52,7 +55,7 @@ pub(super) fn swapped(of: &Estimate) -> Option<Doubt> {
     }
     let more = distance.abs() - saving.abs();
     // Half of the cycles on the wrong side leave no difference: its sign is not known then.
-    let is_open = best.strangers.iter().sum::<f64>() > 0.8;
+    let is_open = strangers.iter().sum::<f64>() > 0.8;
     let both = distance.abs() + saving.abs();
     let widens = match (saving > 0.0, is_open) {
         (_, true) => [both, both],
@@ -67,8 +70,8 @@ pub(super) fn swapped(of: &Estimate) -> Option<Doubt> {
             "both sides look like mixtures of two levels {:.1} % apart, with {:.0} % and {:.0} % of the cycles on \
              the wrong side: were cycles or logs swapped? The interval covers that; check which program ran when",
             100.0 * distance.abs(),
-            100.0 * best.strangers[0],
-            100.0 * best.strangers[1]
+            100.0 * strangers[0],
+            100.0 * strangers[1]
         ),
     })
 }
@@ -76,8 +79,12 @@ pub(super) fn swapped(of: &Estimate) -> Option<Doubt> {
 /// Expectation maximisation.
 fn fit(sides: &[Vec<f64>; 2], levels: [f64; 2], share: f64, variance: f64) -> Mixture {
     let n = sides.iter().map(Vec::len).sum::<usize>() as f64;
-    let mut mixture =
-        Mixture { levels, variance: 0.5 * variance, strangers: [share; 2], likelihood: f64::NEG_INFINITY };
+    let mut mixture = Mixture {
+        levels,
+        variance: 0.5 * variance,
+        strangers: [share; 2],
+        likelihood: f64::NEG_INFINITY,
+    };
     // Levels that hardly scatter are single cycles, not a side.
     let least = 0.02 * variance;
     for _ in 0..STEPS {

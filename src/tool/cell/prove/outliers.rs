@@ -12,7 +12,10 @@ const ENERGY: f64 = 0.5;
 const NORMAL: f64 = 1.4826;
 
 /// Whether each unit is kept, for both sides, and what was left out.
-pub(super) fn kept(sides: &[Vec<(usize, Unit)>; 2], strata: usize) -> ([Vec<bool>; 2], Vec<LeftOut>) {
+pub(super) fn kept(
+    sides: &[Vec<(usize, Unit)>; 2],
+    strata: usize,
+) -> ([Vec<bool>; 2], Vec<LeftOut>) {
     let mut keep = [0, 1].map(|side| vec![true; sides[side].len()]);
     let mut counts = [[0; 3]; 2];
     for stratum in 0..strata {
@@ -21,7 +24,8 @@ pub(super) fn kept(sides: &[Vec<(usize, Unit)>; 2], strata: usize) -> ([Vec<bool
             units.map(|(_, unit)| value(unit)).collect()
         };
         // Both sides have one range of durations, but a retrofit changes the energy.
-        let both: Vec<f64> = [0, 1].iter().flat_map(|side| of(*side, |unit| unit.duration_s)).collect();
+        let both: Vec<f64> =
+            [0, 1].iter().flat_map(|side| of(*side, |unit| unit.duration_s)).collect();
         let durations = range(&both, DURATION);
         for side in 0..2 {
             let energies = range(&of(side, |unit| unit.energy_j), ENERGY);
@@ -42,9 +46,11 @@ pub(super) fn kept(sides: &[Vec<(usize, Unit)>; 2], strata: usize) -> ([Vec<bool
             }
         }
     }
-    let reasons = ["stopped on the way: far longer than others of their kind",
+    let reasons = [
+        "stopped on the way: far longer than others of their kind",
         "ended early: far shorter than others of their kind",
-        "far from the energy of all others of their kind"];
+        "far from the energy of all others of their kind",
+    ];
     let mut left_out = Vec::new();
     for (period, counts) in [Period::Before, Period::After].into_iter().zip(counts) {
         for (why, count) in reasons.iter().zip(counts).filter(|(_, count)| *count > 0) {

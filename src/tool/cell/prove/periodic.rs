@@ -142,7 +142,11 @@ mod tests {
             let mut at = now;
             while at < until {
                 let p = at - now;
-                let work = if p < 6.0 { 400.0 + 300.0 * (2.1 * p).sin() + 200.0 * (5.0 * p).sin() } else { 0.0 };
+                let work = if p < 6.0 {
+                    400.0 + 300.0 * (2.1 * p).sin() + 200.0 * (5.0 * p).sin()
+                } else {
+                    0.0
+                };
                 t.push(at);
                 power.push(300.0 + work + 10.0 * random.f64());
                 at += 0.02;
@@ -151,7 +155,8 @@ mod tests {
         }
         let found = starts(&Series::new(t, power, false));
         assert!(found.len() >= 18, "{found:?}");
-        let offset = found[1] - begins.iter().copied().filter(|b| *b <= found[1]).fold(0.0, f64::max);
+        let offset =
+            found[1] - begins.iter().copied().filter(|b| *b <= found[1]).fold(0.0, f64::max);
         for start in &found {
             let last = begins.iter().copied().filter(|b| *b <= start + 0.1).fold(0.0, f64::max);
             assert!((start - last - offset).abs() < 0.06, "{start} {last} {offset}");

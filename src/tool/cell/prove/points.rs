@@ -27,7 +27,11 @@ pub(super) fn points(sides: &[Vec<(usize, Unit)>; 2]) -> ([Vec<Point>; 2], Optio
 }
 
 /// What is known of the cost of waiting: the power at rest, or anything up to the mean power.
-pub(super) fn prior(measure: Measure, levels: [Option<Level>; 2], points: &[Vec<Point>; 2]) -> Prior {
+pub(super) fn prior(
+    measure: Measure,
+    levels: [Option<Level>; 2],
+    points: &[Vec<Point>; 2],
+) -> Prior {
     if measure == Measure::Joints {
         return Prior { mean: 0.0, sd: 0.0 };
     }

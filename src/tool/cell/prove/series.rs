@@ -139,11 +139,12 @@ fn joint_power(log: &Log) -> Option<Vec<f64>> {
     log.column(Channel::Torque(0))?;
     for joint in 0.. {
         let Some(tau) = log.column(Channel::Torque(joint)) else { break };
-        let rate = match (log.column(Channel::Velocity(joint)), log.column(Channel::Position(joint))) {
-            (Some(rate), _) => rate.to_vec(),
-            (None, Some(q)) => central(t, q),
-            (None, None) => return None,
-        };
+        let rate =
+            match (log.column(Channel::Velocity(joint)), log.column(Channel::Position(joint))) {
+                (Some(rate), _) => rate.to_vec(),
+                (None, Some(q)) => central(t, q),
+                (None, None) => return None,
+            };
         for ((power, tau), rate) in power.iter_mut().zip(tau).zip(&rate) {
             *power += (tau * rate).max(0.0);
         }

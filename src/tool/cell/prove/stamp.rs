@@ -37,7 +37,8 @@ pub(super) fn seconds(date: &str) -> Option<f64> {
         .collect();
     let numbers = numbers?;
     let [year, month, day, rest @ ..] = numbers.as_slice() else { return None };
-    let in_range = (1970..=9999).contains(year) && (1..=12).contains(month) && (1..=31).contains(day);
+    let in_range =
+        (1970..=9999).contains(year) && (1..=12).contains(month) && (1..=31).contains(day);
     if !in_range {
         return None;
     }
@@ -54,7 +55,8 @@ mod tests {
 
     #[test]
     fn notes_are_read() {
-        let found = stamp(b"# program 3f2a\r\n# session 2026-11-29 08:33:12\nt,power\n0,1\n# program 77\n");
+        let found =
+            stamp(b"# program 3f2a\r\n# session 2026-11-29 08:33:12\nt,power\n0,1\n# program 77\n");
         assert_eq!(found.programs, [(1, "3f2a".to_owned()), (5, "77".to_owned())]);
         assert_eq!(found.sessions, ["2026-11-29 08:33:12"]);
     }

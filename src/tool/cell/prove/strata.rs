@@ -36,7 +36,13 @@ pub(super) fn common(sides: [Vec<Unit>; 2]) -> Result<Common, ProveError> {
     let mut notes = Vec::new();
     let mut sides = sides;
     compare(&mut sides, &mut notes, "part", |kind| kind.part.is_some(), |kind| kind.part = None);
-    compare(&mut sides, &mut notes, "payload", |kind| kind.payload.is_some(), |kind| kind.payload = None);
+    compare(
+        &mut sides,
+        &mut notes,
+        "payload",
+        |kind| kind.payload.is_some(),
+        |kind| kind.payload = None,
+    );
     compare(&mut sides, &mut notes, "way", |kind| kind.way.is_some(), |kind| kind.way = None);
     let mut counts: BTreeMap<Kind, [usize; 2]> = BTreeMap::new();
     for (side, units) in sides.iter().enumerate() {

@@ -31,8 +31,8 @@ pub struct Kind {
     pub way: Option<String>,
 }
 
-/// Points of the course of the power over a cycle.
-pub(super) const POINTS: usize = 40;
+/// Points of the course of the power over a cycle: few, because a retrofit moves the peaks.
+pub(super) const POINTS: usize = 16;
 
 /// A complete cycle.
 #[derive(Clone, Debug)]

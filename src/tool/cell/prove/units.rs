@@ -236,7 +236,8 @@ fn heaviest(cycle: &Cycle) -> Option<f64> {
 /// Waits, outputs and loads in order. Lines are not compared: a retrofit inserts some.
 fn way(cycle: &Cycle) -> String {
     let signal = |signal: &Option<String>| signal.clone().unwrap_or_default();
-    let waits = cycle.visits.iter().map(|visit| (visit.came, format!("wait {}", signal(&visit.signal))));
+    let waits =
+        cycle.visits.iter().map(|visit| (visit.came, format!("wait {}", signal(&visit.signal))));
     let events = cycle.events.iter().filter_map(|event| match event.what {
         What::Output(level) => Some((event.t, format!("{}={level}", signal(&event.signal)))),
         What::Load(mass) => Some((event.t, format!("load {mass}"))),

@@ -60,7 +60,10 @@ pub fn prove_report(proof: &Proof, command: &str) -> Result<String, ReportError>
     let plan: Vec<Need> = proof
         .plan
         .iter()
-        .map(|(effect, cycles)| Need { effect: fixed(100.0 * effect, 0), cycles: cycles.to_string() })
+        .map(|(effect, cycles)| Need {
+            effect: fixed(100.0 * effect, 0),
+            cycles: cycles.to_string(),
+        })
         .collect();
     context.insert("plan", &plan);
     render(include_str!("../../../../templates/prove.html.tera"), context)
@@ -70,7 +73,8 @@ pub fn prove_report(proof: &Proof, command: &str) -> Result<String, ReportError>
 fn distributions(proof: &Proof) -> String {
     let all = || proof.energies.iter().flatten().copied();
     let x = scale(all(), 8);
-    let (low, high) = all().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+    let (low, high) =
+        all().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
     let margin = 0.15 * (high - low).max(1e-9);
     let grid: Vec<f64> = (0..=POINTS)
         .map(|i| low - margin + (high - low + 2.0 * margin) * i as f64 / POINTS as f64)
