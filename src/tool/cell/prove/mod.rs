@@ -19,6 +19,8 @@ mod side;
 mod spans;
 mod stamp;
 mod strata;
+#[cfg(test)]
+mod tests;
 mod unit;
 mod units;
 
