@@ -3,6 +3,8 @@
 
 /// Autocorrelations within this many standard errors count as none (D. N. Politis, J. P. Romano).
 const NONE: f64 = 2.0;
+/// Standard errors that are added to φ.
+const HALF: f64 = 0.5;
 /// Least number of blocks of a side.
 const BLOCKS: usize = 6;
 
@@ -77,8 +79,12 @@ fn memory<const N: usize>(series: [&[f64]; N]) -> f64 {
     let (phi, bias) = (one / zero, bias / zero);
     // The estimate is too small by (1 + 3 φ)/n, where a trend has been adjusted for by (2 + 4 φ)/n (M. G. Kendall).
     let corrected = |constant: f64, slope: f64| phi + bias * (constant + slope * phi.max(0.0));
-    let is_seen = corrected(1.0, 3.0) * f64::sqrt(count) > 1.0;
-    if is_seen { corrected(2.0, 4.0).min(0.95) } else { 0.0 }
+    if corrected(1.0, 3.0) * f64::sqrt(count) <= 1.0 {
+        return 0.0;
+    }
+    // The variance of the mean grows faster than φ: a φ that is too small harms more than one too large.
+    let phi = corrected(2.0, 4.0);
+    (phi + HALF * ((1.0 - phi * phi).max(0.0) / count).sqrt()).min(0.95)
 }
 
 /// The same by overlapping circular blocks alone.

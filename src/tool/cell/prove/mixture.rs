@@ -7,6 +7,8 @@ use super::estimate::Estimate;
 /// Twice the logarithm of the likelihoods' ratio from which on strangers are taken as seen: two shares,
 /// which are 0 at the edge of their range.
 const SEEN: f64 = 8.0;
+/// The same where the sides hardly differ, so that nothing but the shape of the scatter speaks for two levels.
+const SEEN_ALONE: f64 = 16.0;
 /// Least distance of the levels, in their standard deviations.
 const APART: f64 = 2.0;
 /// Steps of the expectation maximisation.
@@ -47,15 +49,15 @@ pub(super) fn swapped(of: &Estimate) -> Option<Doubt> {
     let is_turned = best.strangers.iter().sum::<f64>() > 1.0;
     let strangers = best.strangers.map(|share| if is_turned { 1.0 - share } else { share });
     let distance = best.levels[0] - best.levels[1];
-    let is_seen = 2.0 * (best.likelihood - plain) > SEEN
+    // Half of the cycles on the wrong side leave no difference: its sign is not known then.
+    let is_open = strangers.iter().sum::<f64>() > 0.8;
+    let is_seen = 2.0 * (best.likelihood - plain) > if is_open { SEEN_ALONE } else { SEEN }
         && distance.abs() > APART * best.variance.sqrt()
         && distance.abs() > saving.abs();
     if !is_seen {
         return None;
     }
     let more = distance.abs() - saving.abs();
-    // Half of the cycles on the wrong side leave no difference: its sign is not known then.
-    let is_open = strangers.iter().sum::<f64>() > 0.8;
     let both = distance.abs() + saving.abs();
     let widens = match (saving > 0.0, is_open) {
         (_, true) => [both, both],
