@@ -38,6 +38,7 @@ pub fn json(proof: &Proof, command: &str) -> Value {
         },
         "sentence": sentence(proof),
         "energy_j": { "before": proof.energy_j[0], "after": proof.energy_j[1] },
+        "standard_error_percent": proof.standard_error.map(percent),
         "saving_by_scatter_percent": ends(proof.statistical),
         "saving_unadjusted_percent": percent(proof.raw_saving),
         "saving_with_faults_percent": proof.saving_with_faults.map(percent),

@@ -5,6 +5,8 @@
 const NONE: f64 = 2.0;
 /// Standard errors that are added to φ.
 const HALF: f64 = 0.5;
+/// Lags beyond this are not looked at: the series is long, and its memory short.
+const LAGS: usize = 400;
 /// Least number of blocks of a side.
 const BLOCKS: usize = 6;
 
@@ -116,8 +118,6 @@ pub(super) fn drawn_variance(x: &[f64], length: usize) -> f64 {
 fn autocovariances(x: &[f64], most: usize) -> Vec<f64> {
     let n = x.len();
     let mean = x.iter().sum::<f64>() / n.max(1) as f64;
-    // Lags beyond this are not looked at: the series is long, and its memory short.
-    const LAGS: usize = 400;
     let most = most.min(n.saturating_sub(1)).min(LAGS);
     let of = |lag: usize| {
         (lag..n).map(|i| (x[i] - mean) * (x[i - lag] - mean)).sum::<f64>() / n.max(1) as f64

@@ -4,17 +4,18 @@ use super::blocks::{block_length, long_run_variance};
 use super::doubt::{Doubt, Turned, drift, meter, other_work, step};
 use super::error::ProveError;
 use super::estimate::{Estimate, estimate};
-use super::interval::{Uncertainty, uncertainty};
+use super::interval::uncertainty;
 use super::mixture::swapped;
 use super::outliers::{kept, median};
 use super::plan::{FEWEST, needed};
 use super::points::{points, prior};
-use super::proof::{Adjustment, CycleTime, Estimated, Plan, Proof, Settings, Verdict};
+use super::proof::{Estimated, Plan, Proof, Settings, Verdict};
 use super::rest::Level;
-use super::series::{Measure, measure};
+use super::series::measure;
 use super::side::{PowerLog, Side};
 use super::stamp::seconds;
-use super::strata::{Common, Stratum, common};
+use super::strata::{Common, common};
+use super::summary::{adjustments, cycle_time, rest_means, strata};
 use super::unit::{LeftOut, Period, Unit};
 use super::units::{Measured, measured};
 
@@ -23,10 +24,6 @@ const EFFECTS: [f64; 6] = [0.01, 0.02, 0.03, 0.05, 0.08, 0.1];
 /// Largest ratio of the periods that the power alone shows, and of the mean powers.
 const PERIODS: f64 = 1.5;
 const LEVELS: f64 = 3.0;
-/// Standard errors beyond which a difference of the durations is seen, and its least share.
-const LONGER: f64 = 1.645;
-const LEAST_LONGER: f64 = 1e-3;
-
 /// What the logs of two periods show.
 ///
 /// # Errors
@@ -88,6 +85,7 @@ pub fn prove(before: &Side, after: &Side, settings: Settings) -> Result<Proof, P
     Ok(Proof {
         verdict,
         saving: Estimated { value: of.saving, interval },
+        standard_error: uncertain.as_ref().map(|of| of.error),
         statistical,
         raw_saving: of.raw,
         saving_with_faults: with_faults.filter(|_| has_faults).map(|of| of.saving),
@@ -288,67 +286,4 @@ fn verdict(interval: Option<[f64; 2]>, cycles: [usize; 2], needed: usize) -> Ver
         Some(_) if cycles.iter().any(|n| *n < needed) => Verdict::TooFewCycles,
         Some(_) => Verdict::NoDifference,
     }
-}
-
-fn cycle_time(of: &Estimate, uncertain: Option<&Uncertainty>) -> CycleTime {
-    let longer = of.duration[1] - of.duration[0];
-    let is_longer = uncertain.is_some_and(|uncertain| {
-        longer > LONGER * uncertain.error_s && longer > LEAST_LONGER * of.duration[0]
-    });
-    CycleTime {
-        means_s: of.duration,
-        difference_high_s: uncertain.map(|of| of.longer),
-        foreign_s: of.foreign,
-        is_longer,
-    }
-}
-
-fn adjustments(of: &Estimate, measure: Measure) -> Vec<Adjustment> {
-    let mut found = Vec::new();
-    if measure == Measure::Cabinet {
-        found.push(Adjustment {
-            name: "cycle time",
-            change: of.foreign,
-            unit: "s",
-            slope: of.slopes[0],
-            slope_sd: of.slopes_sd[0],
-            energy_j: of.slopes[0] * of.foreign,
-        });
-    }
-    if of.slopes_sd[1] > 0.0 {
-        found.push(Adjustment {
-            name: "temperature",
-            change: of.warmer,
-            unit: "K",
-            slope: of.slopes[1],
-            slope_sd: of.slopes_sd[1],
-            energy_j: of.slopes[1] * of.warmer,
-        });
-    }
-    found
-}
-
-fn strata(names: &[String], units: &[Vec<(usize, Unit)>; 2], of: &Estimate) -> Vec<Stratum> {
-    let row = |(index, name): (usize, &String)| {
-        let of_side = |side: usize| units[side].iter().filter(move |(own, _)| *own == index);
-        let count = [0, 1].map(|side| of_side(side).count());
-        let energy = |side: usize| {
-            of_side(side).map(|(_, unit)| unit.energy_j).sum::<f64>() / count[side].max(1) as f64
-        };
-        Stratum {
-            name: name.clone(),
-            cycles: count,
-            energy_j: [energy(0), energy(1)],
-            weight: of.weights[index],
-        }
-    };
-    names.iter().enumerate().map(row).collect()
-}
-
-fn rest_means(units: &[Vec<(usize, Unit)>; 2]) -> Option<[f64; 2]> {
-    let mean = |side: usize| {
-        let values: Vec<f64> = units[side].iter().filter_map(|(_, unit)| unit.rest_w).collect();
-        (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
-    };
-    Some([mean(0)?, mean(1)?])
 }

@@ -1,8 +1,9 @@
 //! The saving of two sets of cycles, adjusted, with the influence of each cycle.
 //!
-//! Per stratum s, with means over its cycles: S = 1 − (Σ w_s Ē_s,after − A) / Σ w_s Ē_s,before, with
-//! A = P₀ ΔT + γ Δθ, P₀ and γ from the scatter within strata and sides (Frisch–Waugh), and
-//! w_s = n_before n_after / (n_before + n_after): the weights with the least variance, shared by both sides.
+//! With means Ē over the cycles of a stratum, and sums over strata:
+//! `S = 1 − (Σ w Ē_after − A) / Σ w Ē_before`, `A = P₀ ΔT + γ Δθ`, P₀ and γ from the scatter within strata and
+//! sides (Frisch–Waugh), and `w = n_before n_after / (n_before + n_after)`: the weights with the least
+//! variance, shared by both sides.
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -115,7 +116,7 @@ pub(super) fn estimate(sides: [&[Point]; 2], strata: usize, prior: Prior) -> Opt
     let slopes = slopes(sides, &means, prior);
     let [standing, thermal] = slopes.values;
     let adjusted = after - standing * foreign - thermal * warmer;
-    if !(before > 0.0) {
+    if before.is_nan() || before <= 0.0 {
         return None;
     }
     let saving = 1.0 - adjusted / before;

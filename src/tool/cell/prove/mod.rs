@@ -19,6 +19,7 @@ mod side;
 mod spans;
 mod stamp;
 mod strata;
+mod summary;
 #[cfg(test)]
 mod tests;
 mod unit;

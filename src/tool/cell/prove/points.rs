@@ -37,14 +37,10 @@ pub(super) fn prior(
     }
     let all = || points.iter().flatten();
     let [energy, time] = all().fold([0.0; 2], |[e, t], p| [e + p.energy, t + p.duration]);
-    match levels {
-        [Some(before), Some(after)] => {
-            let mean = 0.5 * (before.power_w + after.power_w);
-            Prior { mean, sd: STANDING * mean }
-        }
-        _ => {
-            let half = 0.5 * energy / time.max(f64::MIN_POSITIVE);
-            Prior { mean: half, sd: half }
-        }
+    if let [Some(before), Some(after)] = levels {
+        let mean = 0.5 * (before.power_w + after.power_w);
+        return Prior { mean, sd: STANDING * mean };
     }
+    let half = 0.5 * energy / time.max(f64::MIN_POSITIVE);
+    Prior { mean: half, sd: half }
 }

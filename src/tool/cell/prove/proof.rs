@@ -86,6 +86,8 @@ pub struct Proof {
     pub verdict: Verdict,
     /// Saving as a share of the energy before, with all doubts in its interval.
     pub saving: Estimated,
+    /// Standard error of the saving, share; `None` for too few cycles.
+    pub standard_error: Option<f64>,
     /// The interval by the scatter of the cycles alone.
     pub statistical: Option<[f64; 2]>,
     /// Saving without adjustments.

@@ -22,13 +22,13 @@ impl Period {
 
 /// What a cycle makes, as far as it is known.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Kind {
+pub(super) struct Kind {
     /// The column `part`.
-    pub part: Option<String>,
+    pub(super) part: Option<String>,
     /// Payload in steps of 0.1 kg.
-    pub payload: Option<i64>,
+    pub(super) payload: Option<i64>,
     /// Waits, outputs and loads in their order: the branch that was taken.
-    pub way: Option<String>,
+    pub(super) way: Option<String>,
 }
 
 /// Points of the course of the power over a cycle: few, because a retrofit moves the peaks.
@@ -36,25 +36,23 @@ pub(super) const POINTS: usize = 16;
 
 /// A complete cycle.
 #[derive(Clone, Debug)]
-pub struct Unit {
+pub(super) struct Unit {
     /// The log.
-    pub file: String,
-    /// Number of the cycle in the log, if it has one.
-    pub number: Option<f64>,
+    pub(super) file: String,
     /// Start on the clock of the side, s.
-    pub t: f64,
+    pub(super) t: f64,
     /// ∫ power dt, J.
-    pub energy_j: f64,
+    pub(super) energy_j: f64,
     /// Its duration, s.
-    pub duration_s: f64,
+    pub(super) duration_s: f64,
     /// Time that the robot waits, s.
-    pub rest_s: f64,
+    pub(super) rest_s: f64,
     /// Mean power while it waits, W.
-    pub rest_w: Option<f64>,
+    pub(super) rest_w: Option<f64>,
     /// Mean temperature, °C.
-    pub temperature: Option<f64>,
+    pub(super) temperature: Option<f64>,
     /// What it makes.
-    pub kind: Kind,
+    pub(super) kind: Kind,
     /// Course of the power, W.
     pub(super) course: Vec<f64>,
 }

@@ -7,7 +7,7 @@ use super::side::{EventLog, PowerLog, Side, gap_cause};
 use super::spans::{Source, Span, spans};
 use super::unit::{Kind, LeftOut, POINTS, Period, Unit};
 use crate::learn::log::Channel;
-use crate::tool::cell::events::{Cycle, What};
+use crate::tool::cell::events::{Cycle, Visit, What};
 
 /// Least number of rows of a cycle, and the number below which a note says so.
 const ROWS: f64 = 8.0;
@@ -200,11 +200,10 @@ fn unit(of: &PowerLog, series: &Series, span: &Span, offset: f64) -> Unit {
     let at = |point: usize| begin + lasts * point as f64 / POINTS as f64;
     Unit {
         file: of.shown.clone(),
-        number: span.number,
         t: begin + offset,
         energy_j: series.energy(end) - series.energy(begin),
         duration_s: lasts,
-        rest_s: recorded.map_or(0.0, |cycle| cycle.visits.iter().filter_map(|v| v.length()).sum()),
+        rest_s: recorded.map_or(0.0, |cycle| cycle.visits.iter().filter_map(Visit::length).sum()),
         rest_w: None,
         temperature: column(Channel::Temperature(0)).map(mean),
         kind: Kind {
