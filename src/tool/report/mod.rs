@@ -11,6 +11,7 @@ pub mod place;
 pub mod placement;
 mod plausible;
 pub mod prove;
+mod prove_words;
 pub mod simulated;
 pub mod standstill;
 pub mod suggestions;

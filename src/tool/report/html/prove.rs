@@ -9,7 +9,8 @@ use super::energy_time::scale;
 use super::format::{fixed, joules, seconds};
 use super::page::{ReportError, render};
 use crate::tool::cell::prove::Proof;
-use crate::tool::report::prove::{remarks, sentence, stratum_row, terms};
+use crate::tool::report::prove::stratum_row;
+use crate::tool::report::prove_words::{remarks, sentence, terms};
 use crate::tool::report::svg::{Frame, Scale, Size, points};
 
 const SIZE: Size = Size { width: 1000.0, height: 340.0 };
