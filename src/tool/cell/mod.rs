@@ -1,13 +1,15 @@
 //! The loop in the cell: what a recorder saw, which waits are slack, and what a retrofit saved.
 //!
 //! - [`instrument`]: puts a recorder into a program, and takes it out;
+//! - [`events`]: the log that a recorder writes, and its cycles;
+//! - [`waits`]: which waits are slack;
 //! - [`slack`]: how much later the robot may come to its waits;
-//! - [`events`]: the log that a recorder writes, and its cycles.
-//! - [`waits`]: which waits are slack.
+//! - [`prove`]: what a retrofit saved, measured.
 
 pub mod events;
 mod hash;
 pub mod instrument;
+pub mod prove;
 pub mod slack;
 pub mod waits;
 

@@ -26,6 +26,7 @@ mod parse;
 mod place;
 mod predict;
 mod program_output;
+mod prove;
 mod refresh;
 mod robots;
 mod rule;
@@ -72,6 +73,7 @@ enum Command {
     Calibrate(Box<calibrate::CalibrateArgs>),
     Waits(waits::WaitsArgs),
     Predict(predict::PredictArgs),
+    Prove(prove::ProveArgs),
     Diagnose(Box<diagnose::DiagnoseArgs>),
     Blind(blind::BlindArgs),
     Robots(robots::RobotsArgs),
@@ -100,6 +102,7 @@ pub fn command_line() -> ExitCode {
         Command::Calibrate(args) => calibrate::run(&args),
         Command::Waits(args) => waits::run(&args),
         Command::Predict(args) => predict::run(&args),
+        Command::Prove(args) => prove::run(&args),
         Command::Diagnose(args) => diagnose::run(&args),
         Command::Blind(args) => blind::run(&args),
         Command::Robots(args) => robots::run(&args),

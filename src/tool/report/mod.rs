@@ -12,6 +12,8 @@ mod mark;
 pub mod place;
 pub mod placement;
 mod plausible;
+pub mod prove;
+mod prove_words;
 pub mod simulated;
 pub mod slack;
 pub mod standstill;

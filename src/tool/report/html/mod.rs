@@ -13,6 +13,7 @@ mod movements;
 mod page;
 mod placement;
 mod proof;
+mod prove;
 mod reliability;
 mod samples;
 mod segments;
@@ -29,6 +30,7 @@ pub use grades::grades_report;
 pub use identify::{Traces, identify_report};
 pub use page::ReportError;
 pub use placement::place_report;
+pub use prove::prove_report;
 pub use simulation::simulate_report;
 pub use waits::waits_report;
 
