@@ -1,16 +1,18 @@
 //! `joulepath waits`: which waits of the cell are slack.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, bail};
 use clap::Args;
 
 use super::common::{self, Format};
-use super::{input, output};
+use super::input::{self, Input};
+use super::{choice, output};
 use crate::rapid::text::decode;
 use crate::tool::cell::events::{Place, read};
+use crate::tool::cell::program_hash;
 use crate::tool::cell::waits::file::WaitsFile;
 use crate::tool::cell::waits::{Found, Log, find, record};
 use crate::tool::report::html::waits_report;
@@ -62,10 +64,13 @@ pub(super) fn run(args: &WaitsArgs) -> anyhow::Result<ExitCode> {
     let mut notes = Vec::new();
     let logs: Vec<Log> =
         args.logs.iter().map(|path| read_log(path, &mut notes)).collect::<Result<_, _>>()?;
-    let found = find(&logs, None)?;
+    let input = args.program.as_ref().map(|path| input::read(std::slice::from_ref(path)));
+    let input = input.transpose()?;
+    let hash = input.as_ref().map(hash).transpose()?;
+    let found = find(&logs, hash.as_deref())?;
     notes.extend(doubts(&found, &logs));
-    let lines = match &args.program {
-        Some(program) => lines(program, &found, &mut notes)?,
+    let lines = match args.program.as_ref().zip(input.as_ref()) {
+        Some((program, input)) => lines((program, input), &found, &mut notes),
         None => BTreeMap::new(),
     };
     common::notes(args.quiet, &notes);
@@ -128,11 +133,10 @@ fn doubts(found: &Found, logs: &[Log]) -> Vec<String> {
 
 /// The lines of the waits in the program.
 fn lines(
-    program: &PathBuf,
+    (program, input): (&Path, &Input),
     found: &Found,
     notes: &mut Vec<String>,
-) -> anyhow::Result<BTreeMap<Place, String>> {
-    let input = input::read(std::slice::from_ref(program))?;
+) -> BTreeMap<Place, String> {
     let mut lines = BTreeMap::new();
     for wait in &found.waits {
         let place = &wait.samples.key.place;
@@ -159,5 +163,11 @@ fn lines(
             )),
         }
     }
-    Ok(lines)
+    lines
+}
+
+/// The hash of the program that ran.
+fn hash(input: &Input) -> anyhow::Result<String> {
+    let choice = choice::choose(input)?;
+    Ok(program_hash(&common::sources(&choice)))
 }
