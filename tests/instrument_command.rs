@@ -33,7 +33,8 @@ const PROGRAM: &str = "MODULE Main\r\n\
 
 fn instrumented(path: &str, out: &Path, more: &[&str]) -> Value {
     let out = out.to_str().unwrap();
-    let args = ["instrument", path, "--robot", IRB1600, "--out", out, "--format", "json", "--quiet"];
+    let args =
+        ["instrument", path, "--robot", IRB1600, "--out", out, "--format", "json", "--quiet"];
     json(&[&args[..], more].concat())
 }
 
@@ -42,9 +43,8 @@ fn steps(path: &str) -> Vec<(String, Option<f64>)> {
     let result = json(&["simulate", path, "--robot", IRB1600, "--format", "json", "--quiet"]);
     let list = |name: &str| result[name].as_array().unwrap().clone();
     let all = list("moves").into_iter().chain(list("waits"));
-    let step = |it: Value| {
-        (it["instruction"].as_str().unwrap().to_owned(), it["duration_s"].as_f64())
-    };
+    let step =
+        |it: Value| (it["instruction"].as_str().unwrap().to_owned(), it["duration_s"].as_f64());
     all.map(step).collect()
 }
 
@@ -59,8 +59,13 @@ fn every_line_stays_and_the_recorder_comes_out_again() {
         assert!(lines.contains(&line.trim_end()), "{line}\n{text}");
     }
     let calls = [
-        "jrCycle;", "jrMove 2;", "jrDone 4\\Stops:=zHere.finep;", "jrWait 5;", "jrEnd 5\\Timeout:=bLate;",
-        "jrOut 6,1;", "jrLoad 7,lPart.mass;",
+        "jrCycle;",
+        "jrMove 2;",
+        "jrDone 4\\Stops:=zHere.finep;",
+        "jrWait 5;",
+        "jrEnd 5\\Timeout:=bLate;",
+        "jrOut 6,1;",
+        "jrLoad 7,lPart.mass;",
     ];
     for call in calls {
         assert!(text.contains(call), "{call}\n{text}");
@@ -72,8 +77,18 @@ fn every_line_stays_and_the_recorder_comes_out_again() {
     assert_eq!(steps(&path), steps(out.to_str().unwrap()));
 
     let back = folder.path().join("back");
-    run(&["instrument", out.to_str().unwrap(), "--remove", "--out", back.to_str().unwrap(), "--quiet"]);
-    assert_eq!(files(&back).into_iter().collect::<Vec<_>>(), [("m.mod".to_owned(), PROGRAM.into())]);
+    run(&[
+        "instrument",
+        out.to_str().unwrap(),
+        "--remove",
+        "--out",
+        back.to_str().unwrap(),
+        "--quiet",
+    ]);
+    assert_eq!(
+        files(&back).into_iter().collect::<Vec<_>>(),
+        [("m.mod".to_owned(), PROGRAM.into())]
+    );
 }
 
 #[test]
@@ -111,7 +126,14 @@ fn the_cells_do_the_same_with_a_recorder() {
         let result = instrumented(path, &out, &["--axes", "1,2,3"]);
         assert!(number(&result, "/extra_time/cycle_ms") > 0.0, "{path}");
         let back = folder.path().join(format!("{index}-back"));
-        run(&["instrument", out.to_str().unwrap(), "--remove", "--out", back.to_str().unwrap(), "--quiet"]);
+        run(&[
+            "instrument",
+            out.to_str().unwrap(),
+            "--remove",
+            "--out",
+            back.to_str().unwrap(),
+            "--quiet",
+        ]);
         let original = if program.is_dir() {
             files(program)
         } else {

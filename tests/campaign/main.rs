@@ -118,9 +118,8 @@ fn the_example_goes_from_its_first_log_to_a_proof() {
     let folder = tempfile::tempdir().unwrap();
     let campaign = folder.path().join("campaign");
     let path = campaign.to_str().unwrap();
-    let call = |more: &[&str]| {
-        json(&[&["campaign", path, "--format", "json", "--quiet"], more].concat())
-    };
+    let call =
+        |more: &[&str]| json(&[&["campaign", path, "--format", "json", "--quiet"], more].concat());
     let begun = call(&["--program", "fixtures/pick_place"]);
     assert!(begun["next"].as_str().unwrap().contains("recorded"), "{begun}");
     refused(&["campaign", path, "--program", "fixtures/pick_place"], "is a campaign already");
@@ -133,9 +132,11 @@ fn the_example_goes_from_its_first_log_to_a_proof() {
     assert!(planned["next"].as_str().unwrap().contains("recorded-after"), "{planned}");
     let waits: Value =
         serde_json::from_slice(&fs::read(campaign.join("waits.json")).unwrap()).unwrap();
-    let of_machine = waits["waits"].as_array().unwrap().iter().find(|wait| {
-        wait["file"] == "Machine.mod" && wait["line"] == 44
-    });
+    let of_machine = waits["waits"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|wait| wait["file"] == "Machine.mod" && wait["line"] == 44);
     println!("{of_machine:?}");
     let optimized: Value =
         serde_json::from_slice(&fs::read(campaign.join("optimized.json")).unwrap()).unwrap();

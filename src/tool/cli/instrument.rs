@@ -119,8 +119,7 @@ fn remove(args: &InstrumentArgs) -> anyhow::Result<ExitCode> {
 /// The files of the program, the outputs without recorders, and the modules of the recorders.
 fn originals(input: Input) -> anyhow::Result<(Vec<Source>, Vec<OutputFile>, Vec<PathBuf>)> {
     let recorders = || input.files.iter().filter(|file| is_recorder(&file.source.bytes));
-    let modules: Vec<PathBuf> =
-        recorders().map(|file| PathBuf::from(&file.source.path)).collect();
+    let modules: Vec<PathBuf> = recorders().map(|file| PathBuf::from(&file.source.path)).collect();
     let names: Vec<String> = recorders()
         .filter_map(|file| file.relative.rsplit('/').next().map(str::to_owned))
         .collect();
@@ -174,11 +173,13 @@ fn samples(axes: &[u32], rate: Option<f64>) -> anyhow::Result<Samples> {
 }
 
 fn late(text: &str) -> anyhow::Result<Late> {
-    let wrong = || format!("--late {text}: write it as FILE:LINE=SECONDS, such as Machine.mod:31=0.5");
+    let wrong =
+        || format!("--late {text}: write it as FILE:LINE=SECONDS, such as Machine.mod:31=0.5");
     let (place, seconds) = text.rsplit_once('=').with_context(wrong)?;
     let (file, line) = place.rsplit_once(':').with_context(wrong)?;
     let line: u32 = line.trim().parse().ok().with_context(wrong)?;
-    let seconds: f64 = seconds.trim().trim_end_matches('s').trim().parse().ok().with_context(wrong)?;
+    let seconds: f64 =
+        seconds.trim().trim_end_matches('s').trim().parse().ok().with_context(wrong)?;
     if !(seconds > 0.0 && seconds <= LARGEST_DELAY_S) {
         bail!("--late {text}: give more than 0 and at most {LARGEST_DELAY_S} s");
     }

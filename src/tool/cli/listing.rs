@@ -12,11 +12,7 @@ const END: &[u8] = b"</Module>";
 
 /// Adds the program files to the outputs, with the new modules next to those of their folder.
 /// Returns notes.
-pub(super) fn add(
-    outputs: &mut Vec<OutputFile>,
-    input: &Input,
-    files: &[Source],
-) -> Vec<String> {
+pub(super) fn add(outputs: &mut Vec<OutputFile>, input: &Input, files: &[Source]) -> Vec<String> {
     let mut notes = Vec::new();
     let new: Vec<String> = outputs
         .iter()

@@ -24,8 +24,8 @@ use crate::tool::emit::Layout;
 use crate::tool::report::place::Places;
 use crate::tool::report::{self};
 use crate::tool::retrofit::{
-    Budget, CLOSEST_S, Form, Objective, SPACING_S, Settings, declared_in, freed,
-    is_streams, retrofit, written_in,
+    Budget, CLOSEST_S, Form, Objective, SPACING_S, Settings, declared_in, freed, is_streams,
+    retrofit, written_in,
 };
 use crate::tool::suggest::Applied;
 
@@ -234,7 +234,8 @@ pub(super) fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
         return suggest::list(&args.program, &job);
     }
     let numbers = args.apply.as_ref();
-    let applied = numbers.map(|numbers| suggest::apply(&args.program, &job, numbers)).transpose()?;
+    let applied =
+        numbers.map(|numbers| suggest::apply(&args.program, &job, numbers)).transpose()?;
     let extras = Extras { applied: applied.as_ref(), slack: slack.as_ref() };
     match &applied {
         None => optimize_job(args, &job, &job, extras),
@@ -259,7 +260,9 @@ pub(super) fn refresh(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
         bail!("refresh cannot undo changes; use joulepath optimize --undo");
     }
     if args.suggest || args.apply.is_some() || args.waits.is_some() {
-        bail!("refresh changes streams alone; use joulepath optimize --suggest, --apply or --waits");
+        bail!(
+            "refresh changes streams alone; use joulepath optimize --suggest, --apply or --waits"
+        );
     }
     let mut input = input::read(&args.program.cell.paths)?;
     let streams = streams::remove_streams(&mut input)?;
@@ -314,7 +317,12 @@ fn optimize_job(
     let places = Places::new(&sources);
     let mut written = Vec::new();
     if let Some(folder) = &args.out {
-        written.extend(write_folder(folder, (&original.files, &original.streams.modules), &result.outputs, backup)?);
+        written.extend(write_folder(
+            folder,
+            (&original.files, &original.streams.modules),
+            &result.outputs,
+            backup,
+        )?);
     }
     if args.in_place {
         written.extend(write_in_place(paths, original, &result)?);
@@ -376,7 +384,8 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
     if args.dwell_pose.is_some() && args.emit != EmitArg::Absj {
         bail!("--dwell-pose needs streams: leave out --emit, or give --emit absj");
     }
-    let has_all_tasks = args.only_task || whole_backup(&args.program.cell.paths, &job.input).is_some();
+    let has_all_tasks =
+        args.only_task || whole_backup(&args.program.cell.paths, &job.input).is_some();
     Ok(Settings {
         entry: job.entry.clone(),
         options: job.options.clone(),

@@ -145,8 +145,11 @@ pub(super) fn write_in_place(
                 // An unreadable file could not be restored.
                 let now = std::fs::read(path).with_context(|| format!("cannot read '{path}'"))?;
                 // For a program with streams, undo restores the text without them.
-                let before =
-                    if job.is_refreshed() { encoded(&job.files, file, bytes) } else { (&now).into() };
+                let before = if job.is_refreshed() {
+                    encoded(&job.files, file, bytes)
+                } else {
+                    (&now).into()
+                };
                 if before == after && now == *after {
                     continue;
                 }

@@ -18,8 +18,9 @@ const LARGEST: usize = 10_000_000;
 /// Filling of a block of 1024 bytes from which on it is written: one row more fits.
 const BLOCK: usize = 700;
 /// Names of the events, in the order of their numbers in the module.
-const EVENTS: [&str; 11] =
-    ["cycle", "start", "arrive", "wait", "end", "signal", "output", "load", "tool", "flush", "lost"];
+const EVENTS: [&str; 11] = [
+    "cycle", "start", "arrive", "wait", "end", "signal", "output", "load", "tool", "flush", "lost",
+];
 /// Test signals on the arm side: speed (deg/s) and torque (Nm).
 const SPEED: u32 = 4001;
 const TORQUE: u32 = 4002;
@@ -118,10 +119,9 @@ pub fn recorder(names: &Names, recorder: &Recorder<'_>) -> Result<String, tera::
             site: signal.site,
         })
         .collect();
-    let late = recorder.late.map(|(movement, seconds)| Late {
-        movement,
-        seconds: number(seconds, TIME_DECIMALS),
-    });
+    let late = recorder
+        .late
+        .map(|(movement, seconds)| Late { movement, seconds: number(seconds, TIME_DECIMALS) });
     let mut context = Context::new();
     context.insert("version", env!("CARGO_PKG_VERSION"));
     context.insert("p", &names.prefix);
@@ -148,7 +148,8 @@ pub fn log_name(program: &str) -> String {
 }
 
 fn samples(sampling: &Sampling) -> Samples {
-    let channel = |signal: u32| sampling.axes.iter().map(move |axis| Channel { axis: *axis, signal });
+    let channel =
+        |signal: u32| sampling.axes.iter().map(move |axis| Channel { axis: *axis, signal });
     let mut header = vec!["t,cycle,cmd".to_owned()];
     let columns = (1..=6).map(|axis| format!(",q{axis}_deg"));
     let speeds = sampling.axes.iter().map(|axis| format!(",qd{axis}_deg"));

@@ -89,10 +89,6 @@ pub fn text(made: &Instrumented) -> String {
     if made.left_out.len() > MAX_PLACES {
         let _ = writeln!(out, "not recorded: {} more", made.left_out.len() - MAX_PLACES);
     }
-    let _ = writeln!(
-        out,
-        "the controller writes HOME:/{}; give it to joulepath waits",
-        made.log
-    );
+    let _ = writeln!(out, "the controller writes HOME:/{}; give it to joulepath waits", made.log);
     out
 }

@@ -21,9 +21,10 @@ fn expected(model: &Model, planned: &Planned, result: &Retrofit) -> (f64, Option
 
 /// The entry `waits` of the JSON.
 pub fn json(model: &Model, planned: &Planned, result: &Retrofit) -> Value {
-    let uses = planned.uses.iter().map(
-        |it| json!({ "place": it.place, "later_s": it.delay_s, "median_s": it.median_s }),
-    );
+    let uses = planned
+        .uses
+        .iter()
+        .map(|it| json!({ "place": it.place, "later_s": it.delay_s, "median_s": it.median_s }));
     let (value, interval) = expected(model, planned, result);
     json!({
         "cycles": planned.cycles,
@@ -50,8 +51,7 @@ pub fn text(model: &Model, planned: &Planned, result: &Retrofit) -> String {
         );
     }
     let (value, interval) = expected(model, planned, result);
-    let range =
-        interval.map_or_else(String::new, |it| format!(" ({:.0} to {:.0})", it[0], it[1]));
+    let range = interval.map_or_else(String::new, |it| format!(" ({:.0} to {:.0})", it[0], it[1]));
     let _ = writeln!(
         out,
         "{} of {} recorded cycles would have become longer; expected saving {value:.0} J{range} in a recorded cycle, \

@@ -18,8 +18,8 @@ use crate::tool::emit::{
     self, Names, RecordedSignal, RecordedSite, Recorder, Sampling, end_of_line, log_name,
 };
 use crate::tool::retrofit::{
-    OutputFile, RetrofitError, Source, file_and_line, is_streams, parses, prefix, read_again, read_program,
-    with_edits,
+    OutputFile, RetrofitError, Source, file_and_line, is_streams, parses, prefix, read_again,
+    read_program, with_edits,
 };
 
 /// Signals whose changes are recorded at most: an interrupt each, of the 100 that a controller has.
@@ -158,7 +158,8 @@ pub fn instrument(
     }
     let watched = watched(request, &known, &found.sites)?;
     let simulation = simulate(&program, entry_id, model, options);
-    let late = request.late.as_ref().map(|late| late_movement(late, files, &simulation, &found.sites));
+    let late =
+        request.late.as_ref().map(|late| late_movement(late, files, &simulation, &found.sites));
     let late = late.transpose()?;
 
     let hash = program_hash(files);
@@ -188,8 +189,9 @@ pub fn instrument(
     let names = Names::of_recorder(&sources);
     let module = emit::recorder(&names, &recorder)
         .map_err(|error| InstrumentError::Template(error.to_string()))?;
-    let mut outputs = with_edits(files, edits(&sources, &found.sites, &names.prefix, tools).into_iter())
-        .ok_or_else(|| InstrumentError::Differs("two insertions overlap".to_owned()))?;
+    let mut outputs =
+        with_edits(files, edits(&sources, &found.sites, &names.prefix, tools).into_iter())
+            .ok_or_else(|| InstrumentError::Differs("two insertions overlap".to_owned()))?;
     let beside = &files[program.modules[entry_id.module].span.file.0 as usize];
     let folder = beside.relative.rsplit_once('/').map_or("", |(folder, _)| folder);
     let separator = if folder.is_empty() { "" } else { "/" };
@@ -438,7 +440,9 @@ fn steps(simulation: &Simulation) -> Vec<String> {
     let mut steps = Vec::new();
     for event in &simulation.events {
         match &event.what {
-            What::Run(run) => steps.extend(run.moves.iter().map(|record| movement(&record.movement))),
+            What::Run(run) => {
+                steps.extend(run.moves.iter().map(|record| movement(&record.movement)))
+            }
             What::Wait(record) => {
                 steps.push(format!("{} {:?}", record.wait.instruction, record.wait.signal));
             }

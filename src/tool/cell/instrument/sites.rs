@@ -265,9 +265,10 @@ impl Finder<'_> {
 
     /// Whether a movement ends at a stop point.
     fn stop(&self, module: usize, signature: MoveSignature, call: &Call) -> Stop {
-        let has_stop_point = call.args.iter().any(|arg| {
-            matches!(&arg.kind, ArgKind::Optional(name, _) if name.key == "inpos")
-        });
+        let has_stop_point = call
+            .args
+            .iter()
+            .any(|arg| matches!(&arg.kind, ArgKind::Optional(name, _) if name.key == "inpos"));
         if !signature.zone || has_stop_point {
             return Stop::Always;
         }

@@ -38,21 +38,18 @@ impl Cycle<'_> {
             return Some(Anchor::Cycle);
         }
         let (file, line) = (after.file.as_deref(), after.line);
-        let at = |span: Span| {
-            file.zip(line).is_some_and(|(file, line)| self.is_at(span, file, line))
-        };
+        let at =
+            |span: Span| file.zip(line).is_some_and(|(file, line)| self.is_at(span, file, line));
         let before = self.events[..wait].iter().enumerate().rev();
         let found = |is: &dyn Fn(&What) -> bool| {
             before.clone().find(|(_, event)| is(&event.what)).map(|(index, _)| index)
         };
         match after.event {
             EventEntry::Cycle => Some(Anchor::Cycle),
-            EventEntry::End => {
-                self.standing(found(&|what| matches!(what, What::Wait(it) if at(it.wait.span)))?, wait)
-            }
-            EventEntry::Output => {
-                self.standing(found(&|what| matches!(what, What::Output(it, _) if at(it.span)))?, wait)
-            }
+            EventEntry::End => self
+                .standing(found(&|what| matches!(what, What::Wait(it) if at(it.wait.span)))?, wait),
+            EventEntry::Output => self
+                .standing(found(&|what| matches!(what, What::Output(it, _) if at(it.span)))?, wait),
             EventEntry::Signal => {
                 let signal = after.signal.as_deref()?;
                 let waits = |what: &What| {

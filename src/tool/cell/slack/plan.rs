@@ -164,9 +164,7 @@ fn missing(cycle: &Cycle<'_>, waits: &WaitsFile, way: &WayEntry) -> Option<Strin
     cycle.events.iter().enumerate().find_map(|(index, event)| {
         let What::Wait(record) = &event.what else { return None };
         let is_known = record.wait.duration.is_some() || known.iter().any(|it| it.event == index);
-        (!is_known).then(|| {
-            crate::tool::retrofit::file_and_line(cycle.files, record.wait.span)
-        })
+        (!is_known).then(|| crate::tool::retrofit::file_and_line(cycle.files, record.wait.span))
     })
 }
 
@@ -187,7 +185,11 @@ fn known<'a>(cycle: &Cycle<'_>, waits: &'a WaitsFile, way: &'a WayEntry) -> Vec<
 
 /// Of slacks whose machine runs since the cycle before, at most one is used up, and then no other: the
 /// robot would start that machine later.
-fn keep_independent(slack: &mut Vec<(usize, Anchor)>, known: &[Known<'_>], notes: &mut Vec<String>) {
+fn keep_independent(
+    slack: &mut Vec<(usize, Anchor)>,
+    known: &[Known<'_>],
+    notes: &mut Vec<String>,
+) {
     let is_before =
         |index: usize| known[index].entry.after.as_ref().is_some_and(|after| after.before);
     let size = |index: usize| quantile(&lengths(known[index].record), 0.5);

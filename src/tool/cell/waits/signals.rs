@@ -34,7 +34,7 @@ pub struct SignalTime {
 
 /// The signals of a shift that are recorded or waited for.
 #[must_use]
-pub fn signals(shift: &Shift) -> Vec<SignalTime> {
+pub(super) fn signals(shift: &Shift) -> Vec<SignalTime> {
     let all: Vec<Vec<Moment>> = moments(&shift.cycles);
     let mut changes: BTreeMap<(String, Option<Level>), Vec<(usize, f64)>> = BTreeMap::new();
     for (cycle, moments) in all.iter().enumerate() {

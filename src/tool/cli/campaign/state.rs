@@ -31,10 +31,7 @@ impl State {
     pub(super) fn read(folder: &Path) -> anyhow::Result<State> {
         let path = State::path(folder);
         let text = std::fs::read_to_string(&path).with_context(|| {
-            format!(
-                "'{}' is no campaign yet: begin it with --program PATH",
-                folder.display()
-            )
+            format!("'{}' is no campaign yet: begin it with --program PATH", folder.display())
         })?;
         toml::from_str(&text).with_context(|| {
             format!("{}: known keys are program, robot and risk; correct the file", path.display())

@@ -41,7 +41,9 @@ impl Next {
         match self {
             Next::Do(_) => String::new(),
             Next::InTheCell(text) => text.clone(),
-            Next::Finished => "nothing: the saving is proved or refuted, see report.html".to_owned(),
+            Next::Finished => {
+                "nothing: the saving is proved or refuted, see report.html".to_owned()
+            }
         }
     }
 }
@@ -188,7 +190,8 @@ impl<'a> Steps<'a> {
     fn result(&self, name: &str) -> anyhow::Result<Value> {
         let path = self.path(name);
         let shown = path.display();
-        let text = std::fs::read_to_string(&path).with_context(|| format!("cannot read '{shown}'"))?;
+        let text =
+            std::fs::read_to_string(&path).with_context(|| format!("cannot read '{shown}'"))?;
         serde_json::from_str(&text).with_context(|| {
             format!("'{shown}' is not what joulepath wrote; delete it to have the step done again")
         })
@@ -234,7 +237,10 @@ impl<'a> Steps<'a> {
     pub(super) fn figures(&self) -> anyhow::Result<Vec<String>> {
         let mut lines = Vec::new();
         for (name, line) in [
-            ("recorded.json", crate::tool::report::campaign::recorded as fn(&Value) -> Option<String>),
+            (
+                "recorded.json",
+                crate::tool::report::campaign::recorded as fn(&Value) -> Option<String>,
+            ),
             ("waits.json", crate::tool::report::campaign::waits),
             ("optimized.json", crate::tool::report::campaign::promised),
             ("proof.json", crate::tool::report::campaign::proved),
