@@ -61,7 +61,7 @@ pub(super) fn run(args: &CampaignArgs) -> anyhow::Result<ExitCode> {
         match steps.next()? {
             Next::Do(step) => {
                 common::note(args.quiet, &format!("{}: {}", step.name, step.shown()));
-                steps.execute(&step)?;
+                step.execute()?;
             }
             waiting => break waiting,
         }

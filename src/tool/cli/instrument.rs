@@ -103,7 +103,7 @@ fn remove(args: &InstrumentArgs) -> anyhow::Result<ExitCode> {
     if backup.is_none() {
         refuse_nested_output(&args.out, paths)?;
     }
-    let (files, outputs, modules) = originals(input)?;
+    let (files, outputs, modules) = originals(&input)?;
     let written = write_folder(&args.out, (&files, &modules), &outputs, backup.as_deref())?;
     if args.program.format == Format::Text {
         common::notes(quiet, written.iter().map(|path| format!("wrote {path}")));
@@ -117,7 +117,7 @@ fn remove(args: &InstrumentArgs) -> anyhow::Result<ExitCode> {
 }
 
 /// The files of the program, the outputs without recorders, and the modules of the recorders.
-fn originals(input: Input) -> anyhow::Result<(Vec<Source>, Vec<OutputFile>, Vec<PathBuf>)> {
+fn originals(input: &Input) -> anyhow::Result<(Vec<Source>, Vec<OutputFile>, Vec<PathBuf>)> {
     let recorders = || input.files.iter().filter(|file| is_recorder(&file.source.bytes));
     let modules: Vec<PathBuf> = recorders().map(|file| PathBuf::from(&file.source.path)).collect();
     let names: Vec<String> = recorders()

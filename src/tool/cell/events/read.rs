@@ -78,7 +78,7 @@ fn is_note(row: &[u8]) -> bool {
 
 /// The delimiter of a header.
 fn delimiter(row: &[u8]) -> u8 {
-    let count = |mark: &u8| row.iter().filter(|byte| *byte == mark).count();
+    let count = |mark: &u8| memchr::memchr_iter(*mark, row).count();
     DELIMITERS.into_iter().rev().max_by_key(count).unwrap_or(b',')
 }
 

@@ -3,12 +3,16 @@
 //! The original lines stay. Calls of the recorder stand on lines of their own, or, where several
 //! statements share a line, between them.
 
+mod check;
 mod cost;
+mod error;
 mod insert;
 mod recording;
 mod remove;
 mod sites;
+mod watched;
 
 pub use cost::Cost;
-pub use recording::{InstrumentError, Instrumented, Late, Request, Samples, instrument};
+pub use error::InstrumentError;
+pub use recording::{Instrumented, Late, Request, Samples, instrument};
 pub use remove::{is_recorder, recorder_prefix, without_recorder};

@@ -1,15 +1,16 @@
 //! A program with a recorder.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
+use super::check::check;
 use super::cost::{Cost, Recorded, Samplings, cost};
+use super::error::InstrumentError;
 use super::insert::{before, behind};
-use super::remove::{is_recorder, without_recorder};
+use super::remove::is_recorder;
 use super::sites::{Site, SiteKind, Stop, sites};
-use crate::arm::robot::{Model, nearest};
-use crate::rapid::builtins::SignalKind;
-use crate::rapid::ir::movement::Movement;
-use crate::rapid::ir::signals::{Signal, signals};
+use super::watched::{Watched, watched};
+use crate::arm::robot::Model;
+use crate::rapid::ir::signals::signals;
 use crate::rapid::text::{Edit, SourceFile, Span, charset};
 use crate::retime::motion::timeline::What;
 use crate::retime::motion::{Options, Simulation, simulate};
@@ -18,12 +19,9 @@ use crate::tool::emit::{
     self, Names, RecordedSignal, RecordedSite, Recorder, Sampling, end_of_line, log_name,
 };
 use crate::tool::retrofit::{
-    OutputFile, RetrofitError, Source, file_and_line, is_streams, parses, prefix, read_again,
-    read_program, with_edits,
+    OutputFile, Source, file_and_line, is_streams, prefix, read_program, with_edits,
 };
 
-/// Signals whose changes are recorded at most: an interrupt each, of the 100 that a controller has.
-const MOST_SIGNALS: usize = 40;
 /// Maximum length of a place in a string of the recorder, characters.
 const LONGEST_PLACE: usize = 70;
 /// Largest extra time that is asked for, ms for each movement.
@@ -81,52 +79,6 @@ pub struct Instrumented {
     pub sample_rows: Option<usize>,
 }
 
-/// Why a program gets no recorder.
-#[derive(Debug, thiserror::Error)]
-pub enum InstrumentError {
-    /// The program cannot be read.
-    #[error(transparent)]
-    Read(#[from] RetrofitError),
-    /// It has one.
-    #[error(
-        "'{0}' is a recorder already: take it out first, with joulepath instrument PROGRAM --remove --out DIR"
-    )]
-    Recorder(String),
-    /// Nothing to record.
-    #[error("the program has no movements and no waits that could be recorded")]
-    Nothing,
-    /// A signal that the program does not name.
-    #[error("--signals {name}: the program names no signal '{name}'; {way_out}")]
-    UnknownSignal {
-        /// Its name.
-        name: String,
-        /// What to do.
-        way_out: String,
-    },
-    /// A signal without two levels.
-    #[error("--signals {0}: only digital signals are recorded; leave it out")]
-    NotDigital(String),
-    /// Too many signals.
-    #[error("{0} signals are too many: name at most {MOST_SIGNALS} with --signals")]
-    TooManySignals(usize),
-    /// No wait there.
-    #[error("--late {place}: {reason}")]
-    Late {
-        /// File and line.
-        place: String,
-        /// What is wrong, and the way out.
-        reason: &'static str,
-    },
-    /// The program with the recorder does something else.
-    #[error(
-        "the program with the recorder would not do the same: {0}; nothing is written, please report this"
-    )]
-    Differs(String),
-    /// A template failed.
-    #[error("the template of the recorder failed: {0}")]
-    Template(String),
-}
-
 /// Puts a recorder into a program.
 ///
 /// # Errors
@@ -156,7 +108,7 @@ pub fn instrument(
     if found.sites.iter().all(|site| matches!(site.kind, SiteKind::Cycle)) {
         return Err(InstrumentError::Nothing);
     }
-    let watched = watched(request, &known, &found.sites)?;
+    let watched = watched(request.signals.as_deref(), &known, &found.sites)?;
     let simulation = simulate(&program, entry_id, model, options);
     let late =
         request.late.as_ref().map(|late| late_movement(late, files, &simulation, &found.sites));
@@ -219,69 +171,6 @@ pub fn instrument(
         sample_rows: samplings.map(|own| own.rows),
         program: hash,
     })
-}
-
-/// A signal that is watched.
-struct Watched {
-    name: String,
-    is_output: bool,
-}
-
-/// The signals of the request, or the digital inputs for which the program waits.
-fn watched(
-    request: &Request,
-    known: &BTreeMap<String, Signal>,
-    sites: &[Site],
-) -> Result<Vec<Watched>, InstrumentError> {
-    let outputs: BTreeSet<String> = sites
-        .iter()
-        .filter_map(|site| match &site.kind {
-            SiteKind::Output { signal, .. } => Some(signal.to_lowercase()),
-            _ => None,
-        })
-        .collect();
-    let is_output = |name: &str| {
-        let name = name.to_lowercase();
-        outputs.contains(&name) || name.starts_with("do")
-    };
-    let is_digital = |signal: &Signal| signal.kind == Some(SignalKind::Digital);
-    let mut found: Vec<Watched> = Vec::new();
-    match &request.signals {
-        Some(names) => {
-            for name in names {
-                let Some(signal) = known.get(&name.to_lowercase()) else {
-                    let names = known.values().map(|signal| signal.name.as_str());
-                    let way_out = nearest(name, names).map_or_else(
-                        || "correct the name or leave it out".to_owned(),
-                        |near| format!("did you mean {near}?"),
-                    );
-                    return Err(InstrumentError::UnknownSignal { name: name.clone(), way_out });
-                };
-                if !is_digital(signal) {
-                    return Err(InstrumentError::NotDigital(name.clone()));
-                }
-                let is_new = found.iter().all(|other| other.name != signal.name);
-                let watched = Watched { name: signal.name.clone(), is_output: is_output(name) };
-                found.extend(is_new.then_some(watched));
-            }
-        }
-        None => {
-            let awaited = sites.iter().filter_map(|site| match &site.kind {
-                SiteKind::Wait { signal: Some(signal), .. } => known.get(&signal.to_lowercase()),
-                _ => None,
-            });
-            let names: BTreeSet<&str> = awaited
-                .filter(|signal| is_digital(signal) && !is_output(&signal.name))
-                .map(|signal| signal.name.as_str())
-                .collect();
-            let names = names.into_iter().take(MOST_SIGNALS);
-            found.extend(names.map(|name| Watched { name: name.to_owned(), is_output: false }));
-        }
-    }
-    if found.len() > MOST_SIGNALS {
-        return Err(InstrumentError::TooManySignals(found.len()));
-    }
-    Ok(found)
 }
 
 /// The number of the movement with which the way to a wait begins, and the time by which it begins
@@ -399,58 +288,4 @@ fn edits(files: &[SourceFile], sites: &[Site], p: &str, tools: bool) -> Vec<Edit
         edit.text = encoded.unwrap_or_else(|| std::mem::take(&mut edit.text));
     }
     edits
-}
-
-/// Reads the program with the recorder again: it must do the same, and give back the original.
-fn check(
-    files: &[Source],
-    outputs: &[OutputFile],
-    (entry, prefix): (&str, &str),
-    (model, options): (&Model, &Options),
-    before: &Simulation,
-) -> Result<(), InstrumentError> {
-    if !parses(files, outputs) {
-        return Err(InstrumentError::Differs("it has syntax errors".to_owned()));
-    }
-    let again = read_again(outputs);
-    for (source, output) in files.iter().zip(&again) {
-        if without_recorder(&output.file, prefix) != source.file.bytes {
-            let path = &source.file.path;
-            return Err(InstrumentError::Differs(format!("'{path}' would not come back")));
-        }
-    }
-    let (program, entry) = read_program(&again, entry)?;
-    let after = simulate(&program, entry, model, options);
-    let (before, after) = (steps(before), steps(&after));
-    if before == after {
-        return Ok(());
-    }
-    let differs = before.iter().zip(&after).position(|(a, b)| a != b);
-    let at = differs.unwrap_or_else(|| before.len().min(after.len()));
-    let text = |list: &[String]| list.get(at).cloned().unwrap_or_else(|| "the end".to_owned());
-    Err(InstrumentError::Differs(format!("{} instead of {}", text(&after), text(&before))))
-}
-
-/// What a cycle does, in order.
-fn steps(simulation: &Simulation) -> Vec<String> {
-    let movement = |movement: &Movement| {
-        let Movement { instruction, via, target, speed, zone, tool, wobj, .. } = movement;
-        format!("{instruction} {via:?} {target:?} {speed:?} {zone:?} {tool:?} {wobj:?}")
-    };
-    let mut steps = Vec::new();
-    for event in &simulation.events {
-        match &event.what {
-            What::Run(run) => {
-                steps.extend(run.moves.iter().map(|record| movement(&record.movement)))
-            }
-            What::Wait(record) => {
-                steps.push(format!("{} {:?}", record.wait.instruction, record.wait.signal));
-            }
-            What::Output(output, _) => {
-                steps.push(format!("{} {} {}", output.instruction, output.signal, output.value));
-            }
-            What::Left(left) => steps.push(left.reason.clone()),
-        }
-    }
-    steps
 }

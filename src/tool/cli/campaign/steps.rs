@@ -53,6 +53,19 @@ impl Step {
     pub(super) fn shown(&self) -> String {
         format!("joulepath {}", self.arguments.join(" "))
     }
+
+    /// Runs it and keeps its JSON.
+    pub(super) fn execute(&self) -> anyhow::Result<()> {
+        let program = std::env::current_exe().context("cannot find the joulepath that runs")?;
+        let mut command = Command::new(program);
+        command.args(&self.arguments).args(["--format", "json", "--quiet"]);
+        let output = command.output().with_context(|| format!("cannot run {}", self.shown()))?;
+        if !output.status.success() {
+            let message = String::from_utf8_lossy(&output.stderr);
+            bail!("{}: {}", self.shown(), message.trim().trim_start_matches("error: "));
+        }
+        output::write(&self.result, &output.stdout)
+    }
 }
 
 impl<'a> Steps<'a> {
@@ -195,19 +208,6 @@ impl<'a> Steps<'a> {
         serde_json::from_str(&text).with_context(|| {
             format!("'{shown}' is not what joulepath wrote; delete it to have the step done again")
         })
-    }
-
-    /// Runs a step and keeps its JSON.
-    pub(super) fn execute(&self, step: &Step) -> anyhow::Result<()> {
-        let program = std::env::current_exe().context("cannot find the joulepath that runs")?;
-        let mut command = Command::new(program);
-        command.args(&step.arguments).args(["--format", "json", "--quiet"]);
-        let output = command.output().with_context(|| format!("cannot run {}", step.shown()))?;
-        if !output.status.success() {
-            let message = String::from_utf8_lossy(&output.stderr);
-            bail!("{}: {}", step.shown(), message.trim().trim_start_matches("error: "));
-        }
-        output::write(&step.result, &output.stdout)
     }
 
     /// The steps that are done, each with its page.
