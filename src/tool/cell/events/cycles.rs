@@ -55,17 +55,6 @@ impl Cycle {
     pub fn duration(&self) -> f64 {
         self.end - self.start - self.flush_s
     }
-
-    /// The statements that it came to, in order: cycles of the same kind have the same way.
-    #[must_use]
-    pub fn way(&self) -> Vec<&Place> {
-        let visits = self.visits.iter().map(|visit| (visit.came, &visit.place));
-        let arrivals = self.events.iter().filter(|event| event.what == What::Arrive);
-        let arrivals = arrivals.filter_map(|event| Some((event.t, event.place.as_ref()?)));
-        let mut way: Vec<(f64, &Place)> = visits.chain(arrivals).collect();
-        way.sort_by(|a, b| a.0.total_cmp(&b.0));
-        way.into_iter().map(|(_, place)| place).collect()
-    }
 }
 
 /// The complete cycles of a recording: each ends with the start of the next one in its session.
