@@ -290,6 +290,10 @@ fn logs_of_events_give_waits_and_ways() {
     assert_eq!(proof["verdict"], "saves", "{proof:#}");
     assert!(mentions(&proof, "way 1") && mentions(&proof, "way 2"), "{proof:#}");
     assert_eq!(proof["programs"][1], "bb");
+    assert_eq!(
+        proof["cycles"]["after"], 29,
+        "the last one has no end in the log of events: {proof:#}"
+    );
     let other = path("other.csv", &events(&before, "cc"));
     refused(&["prove", "--before", &b, &eb, &other, "--after", &a], "one version");
     refused(&["prove", "--before", &eb, "--after", &a], "no log of power");

@@ -6,7 +6,7 @@ use super::error::ProveError;
 use super::unit::{Kind, LeftOut, Period, Unit};
 
 /// Least number of cycles of a stratum on each side.
-pub(super) const LEAST: usize = 2;
+const LEAST: usize = 2;
 
 /// What both sides made.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,6 +50,9 @@ pub(super) fn common(sides: [Vec<Unit>; 2]) -> Result<Common, ProveError> {
             counts.entry(unit.kind.clone()).or_default()[side] += 1;
         }
     }
+    // Few cycles of one kind are too few, no other product.
+    let is_enough = counts.values().any(|count| count.iter().all(|n| *n >= LEAST));
+    let least = if is_enough { LEAST } else { 1 };
     let ways: Vec<String> = counts.keys().filter_map(|kind| kind.way.clone()).collect();
     let mut names = Vec::new();
     let mut strata: BTreeMap<Kind, usize> = BTreeMap::new();
@@ -57,7 +60,7 @@ pub(super) fn common(sides: [Vec<Unit>; 2]) -> Result<Common, ProveError> {
     let mut left_out = Vec::new();
     for (kind, count) in &counts {
         let name = name(kind, &ways);
-        if count.iter().all(|n| *n >= LEAST) {
+        if count.iter().all(|n| *n >= least) {
             strata.insert(kind.clone(), names.len());
             names.push(name);
             continue;

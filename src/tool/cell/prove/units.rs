@@ -57,7 +57,7 @@ pub(super) fn measured(
         .flat_map(|of| (0..of.recording.sessions.len()).map(move |session| (of, session)))
         .collect();
     let mut clock = Clock::default();
-    let (mut cut, mut gaps) = (0, Vec::new());
+    let (mut cut, mut unrecorded, mut gaps) = (0, 0, Vec::new());
     for (index, log) in side.logs.iter().enumerate() {
         let series = Series::of(log, measure)?;
         if series.kilowatts {
@@ -72,10 +72,15 @@ pub(super) fn measured(
         }
         let offset = clock.offset(series.range());
         let shortest = shortest(&spans);
+        let has_records = spans.iter().any(|span| span.recorded.is_some());
         for span in spans {
             let lasts = span.end - span.begin;
             if span.is_edge && lasts < shortest - series.step {
                 cut += 1;
+                continue;
+            }
+            if has_records && span.recorded.is_none() {
+                unrecorded += 1;
                 continue;
             }
             if let Some(gap) = series.gap(span.begin, span.end) {
@@ -110,6 +115,7 @@ pub(super) fn measured(
         ));
     }
     found.leave(period, cut, "cut by the begin or the end of the log".to_owned());
+    found.leave(period, unrecorded, "not complete in the log of events".to_owned());
     let longest = gaps.iter().copied().fold(0.0, f64::max);
     let why = format!("a gap in the sampling, up to {longest:.1} s{}", gap_cause(longest));
     found.leave(period, gaps.len(), why);
@@ -177,11 +183,10 @@ fn paired<'a>(
     sessions.iter().copied().max_by(|a, b| common(a).total_cmp(&common(b)))
 }
 
-/// The shortest cycle that the log has not cut.
+/// The shortest cycle that the log has not cut; without one, nothing tells whether the others are whole.
 fn shortest(spans: &[Span]) -> f64 {
     let inner = spans.iter().filter(|span| !span.is_edge);
-    let least = inner.map(|span| span.end - span.begin).fold(f64::INFINITY, f64::min);
-    if least.is_finite() { least } else { 0.0 }
+    inner.map(|span| span.end - span.begin).fold(f64::INFINITY, f64::min)
 }
 
 fn unit(of: &PowerLog, series: &Series, span: &Span, offset: f64) -> Unit {
