@@ -148,7 +148,7 @@ const RESERVED: [Reserved; 15] = [
     },
     Reserved {
         path: &["csv"],
-        places: &["src/learn/log/", "src/tool/generate/table.rs"],
+        places: &["src/learn/log/", "src/tool/generate/table.rs", "src/tool/cell/events/read.rs"],
         why: "only readers of tables know it",
     },
     Reserved {

@@ -60,9 +60,8 @@ fn slack_is_told_from_process_in_cells_of_another_simulator() {
         let log = Log { name: format!("{seed}"), recording };
         let found = find(&[log], None).unwrap();
         for (place, truth) in plant.truth(&script) {
-            let wait = found.waits.iter().find(|wait| {
-                wait.samples.key.place.line as usize == place.line
-            });
+            let wait =
+                found.waits.iter().find(|wait| wait.samples.key.place.line as usize == place.line);
             let Some(wait) = wait else { continue };
             let row = match truth {
                 Truth::Slack { .. } => 0,

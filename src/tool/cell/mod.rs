@@ -7,10 +7,9 @@
 //! - [`prove`]: what a retrofit saved, measured.
 
 pub mod events;
-mod hash;
 pub mod instrument;
 pub mod prove;
 pub mod slack;
 pub mod waits;
 
-pub use hash::program_hash;
+pub use instrument::program_hash;

@@ -3,7 +3,7 @@
 use super::error::EventsError;
 use super::event::{Event, What};
 
-/// Rows may be out of order by the time that an interrupt takes, s.
+/// A TRAP of the program may note out of order, s.
 const INTERRUPT_S: f64 = 1.0;
 /// An hour and a day, by which clocks of the day jump, and by how much such a jump may differ, s.
 const HOUR_S: f64 = 3600.0;
@@ -18,6 +18,10 @@ pub(super) fn ordered(rows: Vec<(u64, Event)>) -> Result<Vec<Event>, EventsError
     let mut waits = false;
     for (line, event) in &rows {
         let line = *line;
+        // The recorder writes these behind the other rows, whatever their time.
+        if matches!(event.what, What::Signal(_) | What::Flush(_) | What::Lost(_)) {
+            continue;
+        }
         if event.t < latest - INTERRUPT_S {
             let back_s = latest - event.t;
             return Err(EventsError::ClockBack { line, back_s, cause: cause_back(back_s) });
@@ -34,10 +38,8 @@ pub(super) fn ordered(rows: Vec<(u64, Event)>) -> Result<Vec<Event>, EventsError
             What::End { .. } | What::Start | What::Arrive | What::Cycle => waits = false,
             _ => {}
         }
-        // An interrupt may tell of a cycle that has just ended.
-        let is_late = matches!(event.what, What::Signal(_) | What::Flush(_) | What::Lost(_));
         match current {
-            Some(now) if now != event.cycle && !is_late => {
+            Some(now) if now != event.cycle => {
                 if before == Some(event.cycle) && event.what != What::Cycle {
                     return Err(EventsError::TwoRobots { line, cycle: event.cycle, other: now });
                 }

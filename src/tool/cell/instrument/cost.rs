@@ -15,7 +15,7 @@ const NOTE: f64 = 13.0;
 /// Instructions for the count of a movement.
 const COUNT: f64 = 4.0;
 /// Instructions for the row of one note, when it is written.
-const ROW: f64 = 17.0;
+const ROW: f64 = 12.0;
 /// Time of writing a block of 1 kB, and rows in it, ms.
 const BLOCK_MS: f64 = 2.0;
 const ROWS_IN_BLOCK: f64 = 15.0;

@@ -6,6 +6,7 @@
 mod check;
 mod cost;
 mod error;
+mod hash;
 mod insert;
 mod recording;
 mod remove;
@@ -14,5 +15,6 @@ mod watched;
 
 pub use cost::Cost;
 pub use error::InstrumentError;
+pub use hash::program_hash;
 pub use recording::{Instrumented, Late, Request, Samples, instrument};
 pub use remove::{is_recorder, recorder_prefix, without_recorder};

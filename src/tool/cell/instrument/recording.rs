@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use super::check::check;
 use super::cost::{Cost, Recorded, Samplings, cost};
 use super::error::InstrumentError;
+use super::hash::program_hash;
 use super::insert::{before, behind};
 use super::remove::is_recorder;
 use super::sites::{Site, SiteKind, Stop, sites};
@@ -14,7 +15,6 @@ use crate::rapid::ir::signals::signals;
 use crate::rapid::text::{Edit, SourceFile, Span, charset};
 use crate::retime::motion::timeline::What;
 use crate::retime::motion::{Options, Simulation, simulate};
-use crate::tool::cell::program_hash;
 use crate::tool::emit::{
     self, Names, RecordedSignal, RecordedSite, Recorder, Sampling, end_of_line, log_name,
 };

@@ -2,7 +2,7 @@
 
 use sha2::{Digest, Sha256};
 
-use super::instrument::is_recorder;
+use super::remove::is_recorder;
 use crate::tool::retrofit::Source;
 
 /// Number of hexadecimal digits.
