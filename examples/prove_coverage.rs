@@ -3,6 +3,8 @@
 //!
 //! `cargo run --release --example prove_coverage -- 200`
 
+#![expect(clippy::print_stdout, reason = "an example prints")]
+
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
@@ -18,6 +20,7 @@ const RATE: f64 = 20.0;
 
 /// A kind of campaign.
 #[derive(Clone, Copy)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a condition of its own")]
 struct World {
     name: &'static str,
     saving: f64,
@@ -121,8 +124,8 @@ fn log(world: &World, side: usize, cycles: &[Cycle], random: &mut fastrand::Rng)
         let gain = if side == 1 { world.gain } else { 1.0 };
         let gain = gain * (1.0 + world.drift * 0.5 * (side as f64 + progress));
         let level = work(world, cycle, degrees) * (1.0 + cycle.noise) / motion;
-        while (row as f64) / RATE < now + lasts {
-            let t = row as f64 / RATE;
+        while f64::from(row) / RATE < now + lasts {
+            let t = f64::from(row) / RATE;
             let u = (t - now) / motion;
             // Mean 1 over the motion.
             let shape = 1.0

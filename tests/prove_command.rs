@@ -267,7 +267,7 @@ fn events(power: &str, program: &str) -> String {
         if cells[2] == last {
             continue;
         }
-        last = cells[2].to_owned();
+        cells[2].clone_into(&mut last);
         let t: f64 = cells[0].parse().unwrap();
         let _ = writeln!(out, "{t},{last},0,,,cycle,,");
         let _ = writeln!(out, "{:.3},{last},1,A.mod,9,wait,,diDoor", t + 6.0);
@@ -360,12 +360,11 @@ fn bad_logs_are_refused_by_name() {
     // Two robots, row by row and cycle by cycle.
     let [first, second] = [plain.text(), Made { gain: 2.0, ..Made::new(27) }.text()];
     let pairs = first.lines().zip(second.lines()).skip(1);
-    let rows: String = pairs
-        .map(|(a, b)| {
-            let (t, rest) = b.split_once(',').unwrap();
-            format!("{a}\n{:.3},{rest}\n", t.parse::<f64>().unwrap() + 0.02)
-        })
-        .collect();
+    let rows = pairs.fold(String::new(), |mut rows, (a, b)| {
+        let (t, rest) = b.split_once(',').unwrap();
+        let _ = write!(rows, "{a}\n{:.3},{rest}\n", t.parse::<f64>().unwrap() + 0.02);
+        rows
+    });
     check("two.csv", &format!("t,power,cycle\n{rows}"), "a file of its own", "two robots");
     let turns: String = first
         .lines()
@@ -377,12 +376,12 @@ fn bad_logs_are_refused_by_name() {
         .collect();
     check("turns.csv", &turns, "a file of its own", "line");
     // Two versions of the program, the wrong column, no cycles, no file.
-    let versions = format!("# program 11\n{}# program 22\n", first);
+    let versions = format!("# program 11\n{first}# program 22\n");
     check("versions.csv", &versions, "one version", "program 22");
     check("names.csv", &first.replace("power", "watts"), "--map power=NAME", "line 1");
     check("negative.csv", &Made { unit: -1.0, ..plain.clone() }.text(), "sign", "line 1");
     check("empty.csv", "", "the first row names the columns", "empty.csv");
-    let short: String = first.lines().take(30).map(|line| format!("{line}\n")).collect();
+    let short = first.lines().take(30).collect::<Vec<_>>().join("\n") + "\n";
     check("short.csv", &short, "column `cycle`", "short.csv");
     let same = written(&campaign.folder, "same.csv", Made::new(25).text());
     refused(&["prove", "--before", &good, "--after", &same], "each log once");

@@ -79,11 +79,17 @@ fn slack_is_told_from_process_in_cells_of_another_simulator() {
             }
         }
     }
-    println!("slack {:?} process {:?} coupled {:?}", table[0], table[1], table[2]);
-    println!("{}", wrong.join("\n"));
     let said: usize = table.iter().map(|row| row[0] + row[1]).sum();
     let right = table[0][0] + table[1][1];
     let dangerous = table[1][0] + table[2][0];
-    assert!(right as f64 >= RIGHT * said as f64, "{right} of {said}: {table:?}");
-    assert!(dangerous as f64 <= WRONG * said as f64, "{dangerous} of {said}: {table:?}");
+    assert!(
+        right as f64 >= RIGHT * said as f64,
+        "{right} of {said}: {table:?}\n{}",
+        wrong.join("\n")
+    );
+    assert!(
+        dangerous as f64 <= WRONG * said as f64,
+        "{dangerous} of {said}: {table:?}\n{}",
+        wrong.join("\n")
+    );
 }

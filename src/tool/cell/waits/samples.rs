@@ -253,6 +253,6 @@ impl Samples {
             covers.then(|| Candidate { times, ..of.clone() })
         });
         let candidates = candidates.collect();
-        Samples { candidates, samples, ..self.clone() }
+        Samples { samples, candidates, ..self.clone() }
     }
 }

@@ -32,11 +32,14 @@ pub struct SignalTime {
     pub deviation_s: f64,
 }
 
+/// Cycles and times of the changes of signals to levels.
+type Changes = BTreeMap<(String, Option<Level>), Vec<(usize, f64)>>;
+
 /// The signals of a shift that are recorded or waited for.
 #[must_use]
 pub(super) fn signals(shift: &Shift) -> Vec<SignalTime> {
     let all: Vec<Vec<Moment>> = moments(&shift.cycles);
-    let mut changes: BTreeMap<(String, Option<Level>), Vec<(usize, f64)>> = BTreeMap::new();
+    let mut changes = Changes::new();
     for (cycle, moments) in all.iter().enumerate() {
         for moment in moments {
             if let Kind::Signal(name, level) = &moment.kind {

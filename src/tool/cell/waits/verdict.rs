@@ -170,15 +170,15 @@ struct Comparison<'a> {
 impl<'a> Comparison<'a> {
     fn new(samples: &'a Samples, evidence: &'a Evidence<'a>) -> Comparison<'a> {
         let answers = evidence.answers();
-        let candidates = samples.candidates.iter().enumerate();
-        let (near, far): (Vec<(usize, &Candidate)>, Vec<(usize, &Candidate)>) =
-            candidates.partition(|(_, candidate)| candidate.stands);
+        let candidates = || samples.candidates.iter().enumerate();
+        let near = samples.candidates.iter().filter(|candidate| candidate.stands);
+        let far = candidates().filter(|(_, candidate)| !candidate.stands);
         let standing: Vec<LogDensities> =
-            near.into_iter().map(|(_, candidate)| evidence.counts_from(candidate, 0.0)).collect();
+            near.map(|candidate| evidence.counts_from(candidate, 0.0)).collect();
         let request = if samples.has_request() { REQUEST_ODDS } else { NO_REQUEST_ODDS };
         let waited = samples.lengths().into_iter().filter(|length| *length > AT_ONCE_S);
         let length = median(waited);
-        let rivals = far.into_iter().map(|(index, candidate)| {
+        let rivals = far.map(|(index, candidate)| {
             let slack = evidence.counts_from(candidate, 0.0);
             let advantage = evidence.advantage(&slack, &answers, MOST_OF_CYCLE);
             let prior = odds(&samples.key, candidate).ln();

@@ -115,7 +115,7 @@ impl Line {
         log.hears = self.hears;
         let restart = if chance.is(0.4) { cycles / 2 } else { cycles };
         let drifts = [(); 2].map(|()| chance.between(-1.0, 1.0) * self.drift);
-        self.run(&mut chance, &mut log, Run { cycles, drifts, restart, late });
+        self.run(&mut chance, &mut log, &Run { cycles, drifts, restart, late });
         log
     }
 }
@@ -129,12 +129,10 @@ fn draw(chance: &mut Chance, place: usize, wide: Wide) -> Drawn {
     let station = match (place, chance.whole(10)) {
         (0, 0..=4) => Station::Operator,
         (0, _) => Station::Clock,
-        (1, _) => Station::Sensor,
+        (1, _) | (_, 5) => Station::Sensor,
         (_, 0..=2) => Station::Machine,
         (_, 3) => Station::Test,
         (_, 4) => Station::Operator,
-        (_, 5) => Station::Sensor,
-        (_, 6) => Station::Clamp,
         (_, 7) => Station::Door,
         (_, 8) => Station::Press,
         (_, _) => Station::Clamp,
@@ -161,7 +159,7 @@ struct Run {
 }
 
 impl Line {
-    fn run(&self, chance: &mut Chance, log: &mut Recorder, of: Run) {
+    fn run(&self, chance: &mut Chance, log: &mut Recorder, of: &Run) {
         let drawn = &self.drawn;
         let count = drawn.len();
         // When each station was left, and the next part of each clock.

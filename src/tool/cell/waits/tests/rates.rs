@@ -91,17 +91,14 @@ fn totals(found: &BTreeMap<Station, [Counts; 2]>) -> [Counts; 2] {
     })
 }
 
-/// Number of lines that each test draws, few of those of which `docs/cell.md` has the rates; `JOULEPATH_LINES` draws more.
-fn lines() -> u64 {
-    std::env::var("JOULEPATH_LINES").ok().and_then(|text| text.parse().ok()).unwrap_or(16)
-}
+/// Number of lines that each test draws, few of those of which `docs/cell.md` has the rates.
+const LINES: u64 = 16;
 
 fn check(seeds: std::ops::Range<u64>, wide: Wide) {
     let found = rates(seeds, wide);
     let [first, second] = totals(&found);
     let sum = |of: Counts| of.iter().sum::<usize>() as f64;
     let shown = format!("{found:#?} {first:?} {second:?}");
-    println!("{shown}");
     assert!(first[2] as f64 <= 0.01 * sum(first) + 1.0, "{shown}");
     assert!(second[2] as f64 <= 0.01 * sum(second) + 1.0, "{shown}");
     assert!(first[0] as f64 >= 0.7 * sum(first), "{shown}");
@@ -113,10 +110,10 @@ fn check(seeds: std::ops::Range<u64>, wide: Wide) {
 
 #[test]
 fn rates_on_lines_like_those_of_the_development() {
-    check(0..lines(), DEVELOPED);
+    check(0..LINES, DEVELOPED);
 }
 
 #[test]
 fn rates_on_other_and_wider_lines() {
-    check(20_000..20_000 + lines(), WIDER);
+    check(20_000..20_000 + LINES, WIDER);
 }
