@@ -13,6 +13,8 @@ const CYCLES: usize = 200;
 const WRONG: f64 = 0.01;
 /// Least share of asserted kinds that are right.
 const RIGHT: f64 = 0.95;
+/// Least share of the waits of a kind that are told without an experiment.
+const TOLD: f64 = 0.5;
 
 /// A program of several stations: ways there, an output, a wait, sometimes a time, ways back.
 fn script(seed: u64) -> Script {
@@ -79,17 +81,14 @@ fn slack_is_told_from_process_in_cells_of_another_simulator() {
             }
         }
     }
-    let said: usize = table.iter().map(|row| row[0] + row[1]).sum();
-    let right = table[0][0] + table[1][1];
-    let dangerous = table[1][0] + table[2][0];
-    assert!(
-        right as f64 >= RIGHT * said as f64,
-        "{right} of {said}: {table:?}\n{}",
-        wrong.join("\n")
-    );
-    assert!(
-        dangerous as f64 <= WRONG * said as f64,
-        "{dangerous} of {said}: {table:?}\n{}",
-        wrong.join("\n")
-    );
+    // A wait that depends in part on the robot's coming may be said to belong to the process: that is safe.
+    let [slack, process, coupled] = table;
+    let told = slack[0] + slack[1] + process[0] + process[1];
+    let right = slack[0] + process[1];
+    let used_up = process[0] + coupled[0];
+    let shown = format!("{table:?}\n{}", wrong.join("\n"));
+    assert!(right as f64 >= RIGHT * told as f64, "{right} of {told}: {shown}");
+    assert!(used_up as f64 <= WRONG * (told + coupled[0] + coupled[1]) as f64, "{shown}");
+    assert!(slack[0] as f64 >= TOLD * slack.iter().sum::<usize>() as f64, "{shown}");
+    assert!(process[1] as f64 >= TOLD * process.iter().sum::<usize>() as f64, "{shown}");
 }
