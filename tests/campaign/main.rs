@@ -23,7 +23,7 @@ use serde_json::Value;
 /// Recorded cycles of each shift.
 const CYCLES: usize = 120;
 /// The machine that makes the robot wait.
-const SLACK: (&str, Kind) = ("diMcReady", Kind::Takt);
+const SLACK: (&str, Kind) = ("diMcReady", Kind::Machine);
 
 /// The cycle of a program as steps of the plant: a movement for each run from rest to rest.
 fn script(model: &Model, files: &[Source]) -> Script {
