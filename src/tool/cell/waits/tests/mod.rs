@@ -2,8 +2,7 @@
 
 mod files;
 mod line;
+mod populations;
 mod rates;
 mod recorder;
 mod rules;
-
-pub(in crate::tool::cell::waits) use recorder::Chance;

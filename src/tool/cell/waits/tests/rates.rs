@@ -93,7 +93,7 @@ fn totals(found: &BTreeMap<Station, [Counts; 2]>) -> [Counts; 2] {
 
 /// Number of lines that each test draws, few of those of which `docs/cell.md` has the rates; `JOULEPATH_LINES` draws more.
 fn lines() -> u64 {
-    std::env::var("JOULEPATH_LINES").ok().and_then(|text| text.parse().ok()).unwrap_or(16)
+    option_env!("JOULEPATH_LINES").and_then(|text| text.parse().ok()).unwrap_or(16)
 }
 
 fn check(seeds: std::ops::Range<u64>, wide: Wide) {
@@ -101,7 +101,6 @@ fn check(seeds: std::ops::Range<u64>, wide: Wide) {
     let [first, second] = totals(&found);
     let sum = |of: Counts| of.iter().sum::<usize>() as f64;
     let shown = format!("{found:#?} {first:?} {second:?}");
-    println!("{shown}");
     assert!(first[2] as f64 <= 0.01 * sum(first) + 1.0, "{shown}");
     assert!(second[2] as f64 <= 0.01 * sum(second) + 1.0, "{shown}");
     assert!(first[0] as f64 >= 0.7 * sum(first), "{shown}");

@@ -122,32 +122,32 @@ impl Recorder {
 }
 
 /// Random times.
-pub(in crate::tool::cell::waits) struct Chance(fastrand::Rng);
+pub(super) struct Chance(fastrand::Rng);
 
 impl Chance {
-    pub(in crate::tool::cell::waits) fn new(seed: u64) -> Chance {
+    pub(super) fn new(seed: u64) -> Chance {
         Chance(fastrand::Rng::with_seed(seed))
     }
 
-    pub(in crate::tool::cell::waits) fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.0.f64()
     }
 
     /// Evenly in the logarithm.
-    pub(in crate::tool::cell::waits) fn scale(&mut self, low: f64, high: f64) -> f64 {
+    pub(super) fn scale(&mut self, low: f64, high: f64) -> f64 {
         self.between(low.ln(), high.ln()).exp()
     }
 
-    pub(in crate::tool::cell::waits) fn is(&mut self, share: f64) -> bool {
+    pub(super) fn is(&mut self, share: f64) -> bool {
         self.0.f64() < share
     }
 
-    pub(in crate::tool::cell::waits) fn whole(&mut self, below: usize) -> usize {
+    pub(super) fn whole(&mut self, below: usize) -> usize {
         self.0.usize(..below)
     }
 
     /// Normal with this deviation (Box and Muller).
-    pub(in crate::tool::cell::waits) fn normal(&mut self, deviation: f64) -> f64 {
+    pub(super) fn normal(&mut self, deviation: f64) -> f64 {
         let radius = (-2.0 * (1.0 - self.0.f64()).ln()).sqrt();
         deviation * radius * (std::f64::consts::TAU * self.0.f64()).cos()
     }
