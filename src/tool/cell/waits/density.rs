@@ -1,9 +1,13 @@
 //! Predictive density of a time from the same time in the cycles around it.
 //!
-//! f(x) = (1 − ε) Σ_j m_j k((x − x_j)/h)/h + ε/T: a kernel estimate with Student's law of three degrees
-//! of freedom, so that a stop of minutes counts as one rare cycle, and a share ε spread over a cycle's
-//! time T. Where a wait found what it waits for already there, only an upper bound of the time is known.
-//! The masses m_j are then those of Kaplan and Meier (1958) for values that are censored from above.
+//! ```text
+//! f(x) = (1 − ε) Σ_j m_j k((x − x_j)/h)/h + ε/T
+//! ```
+//!
+//! A kernel estimate with Student's law of three degrees of freedom, so that a stop of minutes counts as
+//! one rare cycle, and a share ε spread over a cycle's time T. Where a wait found what it waits for already
+//! there, only an upper bound of the time is known. The masses m are then those of Kaplan and Meier (1958)
+//! for values that are censored from above.
 
 use std::f64::consts::PI;
 
@@ -15,7 +19,7 @@ const RARE: f64 = 0.02;
 /// shorter and the time before it longer, which must tell nothing.
 const LEAST_WIDTH_S: f64 = 0.005;
 const LEAST_STEPS: f64 = 2.0;
-/// Silverman's width for a normal law, and the quarter quantile of |x_i − x_j| over its deviation.
+/// Silverman's width for a normal law, and the quarter quantile of differences over its deviation.
 const SILVERMAN: f64 = 1.06;
 const QUARTER: f64 = 0.4506;
 

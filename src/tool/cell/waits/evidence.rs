@@ -45,7 +45,7 @@ pub(super) struct Evidence<'a> {
 
 impl<'a> Evidence<'a> {
     pub(super) fn new(shift: &Shift, samples: &'a Samples) -> Evidence<'a> {
-        let visits = &samples.samples;
+        let visits = &samples.visits;
         // Position of each cycle among those of its way.
         let mut counts = vec![0; shift.frequencies().len()];
         let mut first_of = vec![0; shift.offsets.len()];
@@ -93,7 +93,7 @@ impl<'a> Evidence<'a> {
     /// The machine answers the robot.
     pub(super) fn answers(&self) -> LogDensities {
         let came: Vec<Option<f64>> =
-            self.samples.samples.iter().map(|sample| Some(sample.came)).collect();
+            self.samples.visits.iter().map(|sample| Some(sample.came)).collect();
         self.log_densities(&came, 1.0)
     }
 
@@ -103,7 +103,7 @@ impl<'a> Evidence<'a> {
     }
 
     fn log_densities(&self, from: &[Option<f64>], b: f64) -> LogDensities {
-        let visits = &self.samples.samples;
+        let visits = &self.samples.visits;
         // What is known of r, and what is known of it if signals are not recorded: hypotheses are
         // compared by the latter.
         let known: Vec<Option<[Known; 2]>> = visits
@@ -153,7 +153,7 @@ impl<'a> Evidence<'a> {
         let mut sum = 0.0;
         let mut of_cycle = 0.0;
         let mut current = usize::MAX;
-        for ((a, b), visit) in of.iter().zip(over).zip(&self.samples.samples) {
+        for ((a, b), visit) in of.iter().zip(over).zip(&self.samples.visits) {
             if visit.cycle != current {
                 sum += f64::clamp(of_cycle, -most, most);
                 of_cycle = 0.0;

@@ -33,7 +33,7 @@ impl Experiment {
     #[must_use]
     pub fn of(samples: &Samples) -> Experiment {
         let waited: Vec<f64> = samples
-            .samples
+            .visits
             .iter()
             .filter(|sample| !sample.at_once())
             .map(|sample| sample.length)

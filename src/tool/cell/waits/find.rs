@@ -60,7 +60,7 @@ pub fn find(logs: &[Log], program: Option<&str>) -> Result<Found, WaitsError> {
 fn wait(shift: &Shift, samples: Samples) -> Wait {
     let verdict = verdict(shift, &samples);
     let lengths = samples.lengths();
-    let hours: Vec<f64> = samples.samples.iter().map(|sample| shift.hours(sample.cycle)).collect();
+    let hours: Vec<f64> = samples.visits.iter().map(|sample| shift.hours(sample.cycle)).collect();
     let ready = lengths.iter().filter(|length| **length <= AT_ONCE_S).count();
     let can_tell = matches!(verdict.reason, Reason::CannotTell | Reason::TooFew);
     let in_order = sorted(lengths.iter().copied());

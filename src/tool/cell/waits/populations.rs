@@ -25,7 +25,7 @@ pub struct Population {
 
 /// The populations of lengths, by rising median.
 #[must_use]
-pub fn populations(lengths: &[f64]) -> Vec<Population> {
+pub(super) fn populations(lengths: &[f64]) -> Vec<Population> {
     let logs = sorted(lengths.iter().filter(|x| **x > AT_ONCE_S).map(|x| x.ln()));
     let ready = 1.0 - logs.len() as f64 / lengths.len().max(1) as f64;
     let mut found = Vec::new();

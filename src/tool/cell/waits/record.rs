@@ -82,7 +82,7 @@ fn entry(wait: &Wait) -> WaitEntry {
             WaitKind::Unknown => KindEntry::Unknown,
         },
         reason: wait.verdict.reason.word().to_owned(),
-        n: wait.samples.samples.len(),
+        n: wait.samples.visits.len(),
         compared: wait.verdict.cycles,
         log_odds: (log_odds * 10.0).round() / 10.0 + 0.0,
         slope: wait.verdict.slope.map(|of| [of.value, of.low, of.high].map(rounded)),
@@ -128,7 +128,7 @@ fn way_entry(found: &Found, way: usize) -> WayEntry {
     // Where the visits of each cycle are.
     let mut visits: Vec<Vec<(&Wait, Visit<'_>)>> = vec![Vec::new(); shift.cycles.len()];
     for wait in &found.waits {
-        for (index, sample) in wait.samples.samples.iter().enumerate() {
+        for (index, sample) in wait.samples.visits.iter().enumerate() {
             let from = match wait.after() {
                 Some(candidate) => candidate.times[index],
                 None => Some(shift.cycles[sample.cycle].start),

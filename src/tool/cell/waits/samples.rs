@@ -73,8 +73,8 @@ pub struct Candidate {
 pub struct Samples {
     /// The wait.
     pub key: Key,
-    /// Its samples, by cycle and occurrence.
-    pub samples: Vec<Sample>,
+    /// Its visits, by cycle and occurrence.
+    pub visits: Vec<Sample>,
     /// References that may tell when what it waits for comes.
     pub candidates: Vec<Candidate>,
     /// Number of visits that a time limit ended.
@@ -116,7 +116,7 @@ fn of_wait(shift: &Shift, all: &[Vec<Moment>], key: Key, visits: &[(usize, &Visi
         })
         .collect();
     let candidates = candidates(shift, all, &samples, awaited.as_ref());
-    Samples { key, samples, candidates, by_limit, left }
+    Samples { key, visits: samples, candidates, by_limit, left }
 }
 
 /// The change of the wait's own signal that ends it, if the log has it.
@@ -216,13 +216,13 @@ impl Samples {
     /// Lengths of all samples, s.
     #[must_use]
     pub fn lengths(&self) -> Vec<f64> {
-        self.samples.iter().map(|sample| sample.length).collect()
+        self.visits.iter().map(|sample| sample.length).collect()
     }
 
     /// Median time from a reference to what the wait is for, where the robot has waited, s.
     #[must_use]
     pub fn median_after(&self, candidate: &Candidate) -> f64 {
-        let pairs = self.samples.iter().zip(&candidate.times);
+        let pairs = self.visits.iter().zip(&candidate.times);
         let waited = pairs.filter(|(sample, _)| !sample.at_once());
         median(waited.filter_map(|(sample, t)| Some(sample.end() - (*t)?)))
     }
@@ -240,19 +240,19 @@ impl Samples {
     #[must_use]
     pub fn of_occurrence(&self, occurrence: usize) -> Samples {
         let is_kept: Vec<bool> =
-            self.samples.iter().map(|sample| sample.occurrence == occurrence).collect();
+            self.visits.iter().map(|sample| sample.occurrence == occurrence).collect();
         let kept = |of: &[Option<f64>]| {
             let pairs = of.iter().zip(&is_kept);
             pairs.filter(|(_, kept)| **kept).map(|(t, _)| *t).collect::<Vec<_>>()
         };
         let samples: Vec<Sample> =
-            self.samples.iter().filter(|sample| sample.occurrence == occurrence).cloned().collect();
+            self.visits.iter().filter(|sample| sample.occurrence == occurrence).cloned().collect();
         let candidates = self.candidates.iter().filter_map(|of| {
             let times = kept(&of.times);
             let covers = covers(&samples, times.iter().map(Option::is_some));
             covers.then(|| Candidate { times, ..of.clone() })
         });
         let candidates = candidates.collect();
-        Samples { candidates, samples, ..self.clone() }
+        Samples { visits: samples, candidates, ..self.clone() }
     }
 }

@@ -32,11 +32,14 @@ pub struct SignalTime {
     pub deviation_s: f64,
 }
 
+/// A signal and its new level.
+type Change = (String, Option<Level>);
+
 /// The signals of a shift that are recorded or waited for.
 #[must_use]
-pub fn signals(shift: &Shift) -> Vec<SignalTime> {
+pub(super) fn signals(shift: &Shift) -> Vec<SignalTime> {
     let all: Vec<Vec<Moment>> = moments(&shift.cycles);
-    let mut changes: BTreeMap<(String, Option<Level>), Vec<(usize, f64)>> = BTreeMap::new();
+    let mut changes: BTreeMap<Change, Vec<(usize, f64)>> = BTreeMap::new();
     for (cycle, moments) in all.iter().enumerate() {
         for moment in moments {
             if let Kind::Signal(name, level) = &moment.kind {

@@ -20,7 +20,7 @@ pub struct Trend {
 
 /// The trend of lengths, s, over times, h; `None` of fewer than three times.
 #[must_use]
-pub fn trend(hours: &[f64], lengths: &[f64]) -> Option<Trend> {
+pub(super) fn trend(hours: &[f64], lengths: &[f64]) -> Option<Trend> {
     let step = hours.len().div_ceil(MAX_VALUES).max(1);
     let points: Vec<(f64, f64)> =
         hours.iter().copied().zip(lengths.iter().copied()).step_by(step).collect();

@@ -93,7 +93,7 @@ pub struct Verdict {
 #[must_use]
 pub fn verdict(shift: &Shift, samples: &Samples) -> Verdict {
     let pooled = of(shift, samples);
-    let last = samples.samples.iter().map(|sample| sample.occurrence).max().unwrap_or(0);
+    let last = samples.visits.iter().map(|sample| sample.occurrence).max().unwrap_or(0);
     if last == 0 || matches!(pooled.reason, Reason::Stated | Reason::AlwaysThere) {
         return pooled;
     }
@@ -159,6 +159,9 @@ struct Rival<'a> {
     partly: f64,
 }
 
+/// A reference with its index.
+type Numbered<'a> = (usize, &'a Candidate);
+
 struct Comparison<'a> {
     evidence: &'a Evidence<'a>,
     answers: LogDensities,
@@ -171,7 +174,7 @@ impl<'a> Comparison<'a> {
     fn new(samples: &'a Samples, evidence: &'a Evidence<'a>) -> Comparison<'a> {
         let answers = evidence.answers();
         let candidates = samples.candidates.iter().enumerate();
-        let (near, far): (Vec<(usize, &Candidate)>, Vec<(usize, &Candidate)>) =
+        let (near, far): (Vec<Numbered<'_>>, Vec<Numbered<'_>>) =
             candidates.partition(|(_, candidate)| candidate.stands);
         let standing: Vec<LogDensities> =
             near.into_iter().map(|(_, candidate)| evidence.counts_from(candidate, 0.0)).collect();
@@ -198,8 +201,8 @@ impl<'a> Comparison<'a> {
             Rival { index, candidate, slack, prior, over_process, partly }
         });
         let rivals: Vec<Rival<'a>> = rivals.collect();
-        let ready = samples.samples.iter().filter(|sample| sample.at_once()).count();
-        let at_once = ready as f64 / samples.samples.len().max(1) as f64;
+        let ready = samples.visits.iter().filter(|sample| sample.at_once()).count();
+        let at_once = ready as f64 / samples.visits.len().max(1) as f64;
         Comparison { evidence, answers, rivals, at_once }
     }
 

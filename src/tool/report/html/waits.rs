@@ -82,7 +82,7 @@ fn row(of: Waits<'_>, wait: &Wait) -> WaitRow {
         place: key.place.to_string(),
         signal: key.signal.clone().unwrap_or_default(),
         kind: wait.verdict.kind.word(),
-        n: wait.samples.samples.len(),
+        n: wait.samples.visits.len(),
         median: fixed(median, 2),
         low: fixed(low, 2),
         high: fixed(high, 2),
