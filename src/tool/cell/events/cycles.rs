@@ -77,7 +77,8 @@ pub fn cycles(recording: &Recording) -> Vec<Cycle> {
 
 fn of_session(index: usize, session: &Session) -> Vec<Cycle> {
     let events = &session.events;
-    let starts: Vec<usize> = (0..events.len()).filter(|i| events[*i].what == What::Cycle).collect();
+    let starts: Vec<usize> =
+        (0..events.len()).filter(|i| events[*i].what == What::Cycle).collect();
     let mut cycles = Vec::new();
     for pair in starts.windows(2) {
         let (first, next) = (&events[pair[0]], &events[pair[1]]);

@@ -51,8 +51,7 @@ fn faults_are_named() {
     assert!(error("").contains("no log of events"));
     let head = "t,cycle,cmd,file,line,event,value,signal\n";
     let of = |rows: &str| format!("{head}{rows}");
-    let two =
-        of("0,1,0,,,cycle,,\n1,2,0,,,cycle,,\n1.1,1,1,A.mod,3,wait,,\n1.2,2,1,A.mod,3,wait,,\n");
+    let two = of("0,1,0,,,cycle,,\n1,2,0,,,cycle,,\n1.1,1,1,A.mod,3,wait,,\n1.2,2,1,A.mod,3,wait,,\n");
     assert!(error(&two).contains("two robots"), "{}", error(&two));
     let midnight = of("86390,1,0,,,cycle,,\n5,1,1,A.mod,3,wait,,\n");
     assert!(error(&midnight).contains("at midnight"), "{}", error(&midnight));
