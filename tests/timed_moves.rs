@@ -4,6 +4,7 @@
 mod support;
 
 use std::fmt::Write;
+use std::fs;
 
 use joulepath::arm::dynamics::{Data, torque};
 use joulepath::arm::kinematics::fk;
@@ -116,6 +117,29 @@ fn path_acceleration_is_limited_in_small_zones_too() {
     let worst = (0..steps).map(rate).fold(0.0, f64::max);
     assert!(worst < OVERSHOOT, "{worst} m/s²");
     assert!(worst > 0.9, "nothing was limited: {worst} m/s²");
+}
+
+/// Accepted excess over the time with stop points: the limits are approached in rounds.
+const NO_LONGER: f64 = 1.05;
+
+/// The unlimited program turns the TCP back in small zones, with the limit from any of its statements on.
+#[test]
+fn path_acceleration_slows_no_zone_below_a_stop() {
+    let text = fs::read_to_string("fixtures/lint/EW103_tiny_zone.mod").unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    let cycle = |text: &str| simulated(&irb1600(), &program(text), &Options::default()).cycle_s;
+    let moves = (0..lines.len()).filter(|at| lines[*at].trim_start().starts_with("Move"));
+    let mut slowed = 0;
+    for at in moves {
+        let mut limited = lines.clone();
+        limited.insert(at, "PathAccLim TRUE\\AccMax:=1.5,TRUE\\DecelMax:=1.5;");
+        let limited = limited.join("\n");
+        let stops = limited.replace(",z1,", ",fine,").replace(",z50,", ",fine,");
+        let (flying, stopping) = (cycle(&limited), cycle(&stops));
+        assert!(flying < NO_LONGER * stopping, "line {}: {flying} s, {stopping} s", at + 1);
+        slowed += usize::from(flying > 1.02 * cycle(&text));
+    }
+    assert!(slowed > 3, "the limit slowed {slowed} programs");
 }
 
 /// Largest distance of the TCP from the programmed line, m: the moving average of the joints bends

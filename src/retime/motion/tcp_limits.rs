@@ -10,8 +10,8 @@ use crate::retime::path::JointPath;
 
 /// Longest step between two samples, s.
 const STEP: f64 = 0.002;
-/// Where the TCP turns back, its acceleration along the path has steps: at speeds that the limit reaches
-/// within this time, s, the mean change of speed over twice this time counts.
+/// Where the TCP turns back, its acceleration along the path has steps: at speeds that the lower limit
+/// reaches within this time, s, the mean change of speed over twice this time counts.
 const HALF_SPAN: f64 = 0.01;
 
 /// True if a leg has a limit on the TCP acceleration.
@@ -33,10 +33,10 @@ pub(super) fn worst(
         let end = motion.time_at(path.leg_end(leg));
         let tool = path.extent(leg).tool;
         let [up, down] = caps[leg].path_acceleration;
-        let velocity = |time: f64| {
+        let speed = |time: f64| {
             let state = motion.at(time);
             let twist = tool.jacobian(model, &state.q) * nalgebra::Vector6::from(state.qd);
-            twist.fixed_rows::<3>(0).into_owned()
+            twist.fixed_rows::<3>(0).norm()
         };
         let steps = ((end - begin) / STEP).ceil().max(1.0);
         let mut worst: f64 = 0.0;
@@ -49,13 +49,12 @@ pub(super) fn worst(
                 + tool.jacobian_dot(model, &state.q, &state.qd) * qd;
             let a = a.fixed_rows::<3>(0);
             worst = worst.max(a.norm() / caps[leg].world_acceleration);
-            let v = velocity(time);
+            let v = (jacobian * qd).fixed_rows::<3>(0).into_owned();
             let along = if v.norm() > HALF_SPAN * up.min(down) {
                 a.dot(&v) / v.norm()
             } else {
                 let [from, to] = [(time - HALF_SPAN).max(begin), (time + HALF_SPAN).min(end)];
-                let change = velocity(to).norm() - velocity(from).norm();
-                if to > from { change / (to - from) } else { 0.0 }
+                if to > from { (speed(to) - speed(from)) / (to - from) } else { 0.0 }
             };
             worst = worst.max(along / up).max(-along / down);
         }
