@@ -78,6 +78,7 @@ const WINGS: [Wing; 7] = [
             room("blind", &["robot"]),
             room("injected", &["robot", "dynamics", "log", "identify", "blind"]),
             room("worlds", &["blind"]),
+            room("plant", &[]),
         ],
     ),
     wing(
@@ -89,12 +90,13 @@ const WINGS: [Wing; 7] = [
             room("lint", &["rapid", "arm", "path", "motion", "energy"]),
             room("place", &["rapid", "arm", "retime", "retrofit", "lint"]),
             room("suggest", &["rapid", "arm", "retime", "retrofit", "lint"]),
+            room("cell", &["rapid", "arm", "retime", "log", "emit", "retrofit"]),
             room("config", &["lint"]),
             room(
                 "report",
                 &[
                     "rapid", "arm", "retime", "learn", "gap", "examine", "retrofit", "lint",
-                    "place", "suggest",
+                    "place", "suggest", "cell",
                 ],
             ),
             room("lsp", &["rapid", "arm", "retime", "lint"]),
@@ -102,7 +104,7 @@ const WINGS: [Wing; 7] = [
                 "cli",
                 &[
                     "rapid", "arm", "retime", "learn", "gap", "examine", "emit", "retrofit",
-                    "generate", "lint", "place", "suggest", "config", "report", "lsp",
+                    "generate", "lint", "place", "suggest", "cell", "config", "report", "lsp",
                 ],
             ),
         ],
@@ -146,7 +148,7 @@ const RESERVED: [Reserved; 15] = [
     },
     Reserved {
         path: &["csv"],
-        places: &["src/learn/log/", "src/tool/generate/table.rs"],
+        places: &["src/learn/log/", "src/tool/generate/table.rs", "src/tool/cell/events/read.rs"],
         why: "only readers of tables know it",
     },
     Reserved {

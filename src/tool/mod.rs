@@ -3,6 +3,7 @@
 //! - [`emit`], [`retrofit`], [`generate`]: RAPID text from streams, the main job, programs from points;
 //! - [`lint`]: wasted energy, with joules and fixes;
 //! - [`place`]: where frames should stand;
+//! - [`cell`]: the recorder in the cell, its logs, and what they prove;
 //! - [`suggest`]: changes that a person has to approve;
 //! - [`report`]: results as text, JSON and HTML;
 //! - [`config`]: `joulepath.toml`;
@@ -11,6 +12,7 @@
 //!
 //! It uses all other wings.
 
+pub mod cell;
 pub mod cli;
 pub mod config;
 pub mod emit;

@@ -29,6 +29,10 @@ pub enum Channel {
     Line,
     /// `cmd`, the number of the current movement; 0 = none.
     Command,
+    /// `part`, the kind of workpiece: a number, or one that stands for its name.
+    Part,
+    /// `payload` \[kg\].
+    Payload,
 }
 
 /// A column's channel, and its factor to the SI unit.
@@ -52,6 +56,11 @@ impl Channel {
         matches!(self, Channel::Position(_) | Channel::Velocity(_) | Channel::Acceleration(_))
     }
 
+    /// Whether it tells what is made: only commands that compare products read it.
+    pub(super) fn is_product(self) -> bool {
+        matches!(self, Channel::Part | Channel::Payload)
+    }
+
     /// The channel of a column name, regardless of case; `None` for an unknown name.
     pub(super) fn named(name: &str) -> Option<Named> {
         let name = name.trim().to_ascii_lowercase();
@@ -62,6 +71,8 @@ impl Channel {
             "cycle" => Some(Channel::Cycle),
             "line" => Some(Channel::Line),
             "cmd" => Some(Channel::Command),
+            "part" => Some(Channel::Part),
+            "payload" => Some(Channel::Payload),
             _ => None,
         };
         if let Some(channel) = single {

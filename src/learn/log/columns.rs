@@ -8,6 +8,8 @@ use super::error::LogError;
 pub struct ColumnMap {
     /// Name of a channel, such as `tau1` or `q1_deg`, and its column.
     pairs: Vec<(String, String)>,
+    /// Whether `part` and `payload` are read under these names.
+    products: bool,
 }
 
 impl ColumnMap {
@@ -32,7 +34,13 @@ impl ColumnMap {
             }
             pairs.push((channel, column));
         }
-        Ok(ColumnMap { pairs })
+        Ok(ColumnMap { pairs, products: false })
+    }
+
+    /// Also reads the columns that tell what is made, `part` and `payload`.
+    #[must_use]
+    pub fn with_products(self) -> ColumnMap {
+        ColumnMap { products: true, ..self }
     }
 
     /// The channel of a column name.
@@ -41,6 +49,9 @@ impl ColumnMap {
             return Channel::named(channel);
         }
         let named = Channel::named(column)?;
+        if named.channel.is_product() && !self.products {
+            return None;
+        }
         // A mapped channel does not use its default name.
         let taken = |(channel, _): &(String, String)| {
             Channel::named(channel).is_some_and(|other| other.channel == named.channel)

@@ -3,6 +3,7 @@
 use super::channel::Channel;
 use super::columns::{Column, ColumnMap, recognised};
 use super::notation::{Notation, notations, number, trimmed};
+use super::part::part_number;
 use super::text_row::{fields, is_blank};
 
 /// Possible delimiters; the first one is preferred.
@@ -109,7 +110,11 @@ impl<'a> Header<'a> {
         notations: &[Notation],
     ) -> Result<Vec<f64>, String> {
         let number = |(column, notation): (&Column, &Notation)| {
-            let value = number(&trimmed(fields[column.index]), *notation);
+            let text = trimmed(fields[column.index]);
+            if column.named.channel == Channel::Part {
+                return Ok(part_number(&text, *notation));
+            }
+            let value = number(&text, *notation);
             let value = value.map_err(|why| format!("{} {why}", column.name))?;
             Ok(value * column.named.unit)
         };

@@ -18,11 +18,13 @@ mod motion;
 mod notation;
 #[cfg(feature = "parquet")]
 mod parquet;
+mod part;
 #[cfg(test)]
 mod periodic_motion;
 mod periods;
 mod read;
 mod rows;
+mod scan;
 mod text_row;
 mod three_phase;
 mod time_order;
@@ -44,6 +46,7 @@ pub use marks::{Aligned, aligned, are_halves};
 pub use motion::Motion;
 pub use periods::{Periods, find_periods};
 pub use read::{read, read_from};
+pub use scan::{Scan, scan};
 pub use three_phase::{Signed, Vectors, coherence, signed, vectors};
 pub use time_shift::{Shift, between_grid, downhill, golden_section, on_grid, vertex};
 pub use uniform::{Section, interpolated, median_step, quantile, range, sections};

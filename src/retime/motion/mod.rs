@@ -1,5 +1,6 @@
 //! The virtual controller: from a program to a timed joint trajectory.
 
+pub mod arrivals;
 pub mod averaged;
 pub mod controller;
 pub mod joint_state;

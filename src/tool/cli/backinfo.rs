@@ -3,15 +3,16 @@
 use std::path::Path;
 
 use super::input::Input;
-use crate::tool::retrofit::{OutputFile, OutputKind, Retrofit};
+use crate::tool::retrofit::{OutputFile, OutputKind};
 
 /// Ends the name of a module in its line; the origin of the module may follow.
 const MARK: u8 = b'@';
 
 /// Adds the backup's list to the outputs, with the new modules next to those of their folder.
-pub(super) fn add(result: &mut Retrofit, input: &Input) {
-    let new: Vec<(String, String, String)> = result
-        .outputs
+/// Returns notes.
+pub(super) fn add(outputs: &mut Vec<OutputFile>, input: &Input) -> Vec<String> {
+    let mut notes = Vec::new();
+    let new: Vec<(String, String, String)> = outputs
         .iter()
         .filter(|file| file.kind == OutputKind::New)
         .filter_map(|file| task_and_place(input, &file.path))
@@ -23,12 +24,13 @@ pub(super) fn add(result: &mut Retrofit, input: &Input) {
                 bytes = longer;
             } else {
                 let path = &info.path;
-                result.notes.push(format!("'{path}' could not be extended: list {name} in it"));
+                notes.push(format!("'{path}' could not be extended: list {name} in it"));
             }
         }
         let kind = if bytes == info.bytes { OutputKind::Unchanged } else { OutputKind::Changed };
-        result.outputs.push(OutputFile { path: info.relative.clone(), kind, bytes, input: None });
+        outputs.push(OutputFile { path: info.relative.clone(), kind, bytes, input: None });
     }
+    notes
 }
 
 /// Task, folder and file of a new module, taken from the modules of its folder.

@@ -12,8 +12,8 @@ use indicatif::{ProgressBar, ProgressDrawTarget};
 use serde_json::Value;
 
 use super::backup::motion_configuration;
-use super::choice;
-use super::input::{self, Input, Unreadable};
+use super::choice::{self, Choice};
+use super::input::{self, Input, InputFile, Unreadable};
 use super::streams::Streams;
 use crate::arm::effects;
 use crate::arm::kinematics::limits_ok;
@@ -208,18 +208,19 @@ pub(super) fn prepare_read(program: &ProgramArgs, input: Input) -> anyhow::Resul
     let entry = entry.unwrap_or_else(|| "main".into());
     let (options, inputs) = simulation_options(args, &config, Some(&model))?;
     let options = with_overrides(program, options)?;
-    let files: Vec<Source> = choice
-        .files
-        .iter()
-        .enumerate()
-        .map(|(i, file)| Source {
-            file: SourceFile { id: FileId(i as u32), ..file.source.clone() },
-            relative: file.relative.clone(),
-        })
-        .collect();
+    let files = sources(&choice);
     let streams = Streams::default();
     let named = named_paths(args);
     Ok(Job { input, files, streams, model, config, entry, options, inputs, named })
+}
+
+/// The files of the program.
+pub(super) fn sources(choice: &Choice<'_>) -> Vec<Source> {
+    let source = |(index, file): (usize, &&InputFile)| Source {
+        file: SourceFile { id: FileId(index as u32), ..file.source.clone() },
+        relative: file.relative.clone(),
+    };
+    choice.files.iter().enumerate().map(source).collect()
 }
 
 /// The options of the simulation, and the inputs with stated times as the user wrote them.

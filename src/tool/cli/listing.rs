@@ -5,15 +5,16 @@ use std::path::Path;
 use memchr::memmem::find;
 
 use super::input::{Input, Listing};
-use crate::tool::retrofit::{OutputFile, OutputKind, Retrofit, Source};
+use crate::tool::retrofit::{OutputFile, OutputKind, Source};
 
 const BEGIN: &[u8] = b"<Module>";
 const END: &[u8] = b"</Module>";
 
 /// Adds the program files to the outputs, with the new modules next to those of their folder.
-pub(super) fn add(result: &mut Retrofit, input: &Input, files: &[Source]) {
-    let new: Vec<String> = result
-        .outputs
+/// Returns notes.
+pub(super) fn add(outputs: &mut Vec<OutputFile>, input: &Input, files: &[Source]) -> Vec<String> {
+    let mut notes = Vec::new();
+    let new: Vec<String> = outputs
         .iter()
         .filter(|file| file.kind == OutputKind::New && is_module(file))
         .map(|file| file.path.clone())
@@ -37,11 +38,12 @@ pub(super) fn add(result: &mut Retrofit, input: &Input, files: &[Source]) {
                 output.bytes = bytes;
             } else {
                 let path = &listing.path;
-                result.notes.push(format!("'{path}' could not be extended: list {new} in it"));
+                notes.push(format!("'{path}' could not be extended: list {new} in it"));
             }
         }
-        result.outputs.push(output);
+        outputs.push(output);
     }
+    notes
 }
 
 fn is_module(file: &OutputFile) -> bool {

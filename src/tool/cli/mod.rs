@@ -4,6 +4,7 @@ mod backinfo;
 mod backup;
 mod blind;
 mod calibrate;
+mod campaign;
 mod choice;
 mod common;
 mod diagnose;
@@ -11,6 +12,7 @@ mod excite;
 mod generate;
 mod identify;
 mod input;
+mod instrument;
 mod keep_outs;
 mod lint;
 mod listing;
@@ -24,16 +26,19 @@ mod parse;
 mod place;
 mod predict;
 mod program_output;
+mod prove;
 mod refresh;
 mod robots;
 mod rule;
 mod signals;
 mod simulate;
+mod slack;
 mod standstill;
 mod streams;
 mod streamtest;
 mod suggest;
 mod undo;
+mod waits;
 
 use std::io::{ErrorKind, Write as _};
 use std::process::ExitCode;
@@ -60,11 +65,15 @@ enum Command {
     Generate(generate::GenerateArgs),
     Place(Box<place::PlaceArgs>),
     Standstill(standstill::StandstillArgs),
+    Instrument(Box<instrument::InstrumentArgs>),
+    Campaign(campaign::CampaignArgs),
     Excite(Box<excite::ExciteArgs>),
     Streamtest(streamtest::StreamtestArgs),
     Identify(Box<identify::IdentifyArgs>),
     Calibrate(Box<calibrate::CalibrateArgs>),
+    Waits(waits::WaitsArgs),
     Predict(predict::PredictArgs),
+    Prove(prove::ProveArgs),
     Diagnose(Box<diagnose::DiagnoseArgs>),
     Blind(blind::BlindArgs),
     Robots(robots::RobotsArgs),
@@ -85,11 +94,15 @@ pub fn command_line() -> ExitCode {
         Command::Generate(args) => generate::run(&args),
         Command::Place(args) => place::run(&args),
         Command::Standstill(args) => standstill::run(&args),
+        Command::Instrument(args) => instrument::run(&args),
+        Command::Campaign(args) => campaign::run(&args),
         Command::Excite(args) => excite::run(&args),
         Command::Streamtest(args) => streamtest::run(&args),
         Command::Identify(args) => identify::run(&args),
         Command::Calibrate(args) => calibrate::run(&args),
+        Command::Waits(args) => waits::run(&args),
         Command::Predict(args) => predict::run(&args),
+        Command::Prove(args) => prove::run(&args),
         Command::Diagnose(args) => diagnose::run(&args),
         Command::Blind(args) => blind::run(&args),
         Command::Robots(args) => robots::run(&args),

@@ -7,26 +7,25 @@ use std::process::ExitCode;
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use similar::TextDiff;
 
 use super::common::{self, Format, Job, ProgramArgs};
 use super::keep_outs::keep_outs;
 use super::program_output::{
-    current_bytes, refuse_nested_output, whole_backup, write_folder, write_in_place,
+    diff, refuse_nested_output, whole_backup, write_folder, write_in_place,
 };
-use super::{backinfo, input, listing, output, streams, suggest, undo};
-use crate::rapid::text::charset;
+use super::{backinfo, input, listing, output, slack, streams, suggest, undo};
 use crate::retime::optimize::cost::Cost;
 use crate::retime::optimize::freedom::{Bound, Freedom};
 use crate::retime::optimize::resting::IdleState;
 use crate::retime::optimize::retime::SLOWEST;
+use crate::tool::cell::slack::Planned;
 use crate::tool::config::{Config, Idle};
 use crate::tool::emit::Layout;
 use crate::tool::report::place::Places;
 use crate::tool::report::{self};
 use crate::tool::retrofit::{
-    Budget, CLOSEST_S, Form, Objective, Retrofit, SPACING_S, Settings, declared_in, freed,
-    is_streams, retrofit, written_in,
+    Budget, CLOSEST_S, Form, Objective, SPACING_S, Settings, declared_in, freed, is_streams,
+    retrofit, written_in,
 };
 use crate::tool::suggest::Applied;
 
@@ -151,6 +150,15 @@ pub(super) struct OptimizeArgs {
     #[arg(long, value_name = "N,…|all")]
     apply: Option<String>,
 
+    /// Use up the slack of recorded waits (joulepath waits), between the event from which the machine's
+    /// time counts and the wait.
+    #[arg(long, value_name = "waits.toml")]
+    waits: Option<PathBuf>,
+
+    /// Share of cycles that may become longer by that.
+    #[arg(long, value_name = "SHARE", requires = "waits", default_value = slack::RISK)]
+    risk: String,
+
     /// Exit with 1 if some movement was refused.
     #[arg(long)]
     strict: bool,
@@ -219,19 +227,31 @@ pub(super) fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
     if args.undo {
         return undo_in_place(args);
     }
-    let job = common::prepare(&args.program)?;
+    let mut job = common::prepare(&args.program)?;
+    let slack = args.waits.as_ref().map(|path| slack::use_waits(&mut job, path, &args.risk));
+    let slack = slack.transpose()?;
     if args.suggest {
         return suggest::list(&args.program, &job);
     }
-    match &args.apply {
-        None => optimize_job(args, &job, &job, None),
-        Some(numbers) => {
-            let applied = suggest::apply(&args.program, &job, numbers)?;
-            let files = applied.files.clone();
-            let changed = Job { files, ..common::prepare(&args.program)? };
-            optimize_job(args, &changed, &job, Some(&applied))
+    let numbers = args.apply.as_ref();
+    let applied =
+        numbers.map(|numbers| suggest::apply(&args.program, &job, numbers)).transpose()?;
+    let extras = Extras { applied: applied.as_ref(), slack: slack.as_ref() };
+    match &applied {
+        None => optimize_job(args, &job, &job, extras),
+        Some(applied) => {
+            let (files, options) = (applied.files.clone(), job.options.clone());
+            let changed = Job { files, options, ..common::prepare(&args.program)? };
+            optimize_job(args, &changed, &job, extras)
         }
     }
+}
+
+/// What is done beside the retrofit.
+#[derive(Clone, Copy, Default)]
+struct Extras<'a> {
+    applied: Option<&'a Applied>,
+    slack: Option<&'a Planned>,
 }
 
 /// Optimises a program that already has streams and replaces these.
@@ -239,14 +259,16 @@ pub(super) fn refresh(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
     if args.undo {
         bail!("refresh cannot undo changes; use joulepath optimize --undo");
     }
-    if args.suggest || args.apply.is_some() {
-        bail!("refresh changes streams alone; use joulepath optimize --suggest, or --apply");
+    if args.suggest || args.apply.is_some() || args.waits.is_some() {
+        bail!(
+            "refresh changes streams alone; use joulepath optimize --suggest, --apply or --waits"
+        );
     }
     let mut input = input::read(&args.program.cell.paths)?;
     let streams = streams::remove_streams(&mut input)?;
     let job = common::prepare_read(&args.program, input)?;
     let job = Job { streams, ..job };
-    optimize_job(args, &job, &job, None)
+    optimize_job(args, &job, &job, Extras::default())
 }
 
 /// Retrofits a program. `original`: the program as the files have it, before suggestions.
@@ -254,14 +276,14 @@ fn optimize_job(
     args: &OptimizeArgs,
     job: &Job,
     original: &Job,
-    applied: Option<&Applied>,
+    extras: Extras<'_>,
 ) -> anyhow::Result<ExitCode> {
     let settings = settings(args, job)?;
     output::refuse_inputs(&[("--report", args.report.as_ref())], job.read_paths())?;
     let quiet = args.program.cell.quiet;
     // The folder of a single task does not include the controller's module list.
     let paths = args.program.cell.paths.as_slice();
-    let backup = whole_backup(paths, job);
+    let backup = whole_backup(paths, &job.input);
     if let (Some(folder), None) = (&args.out, backup) {
         refuse_nested_output(folder, paths)?;
     }
@@ -275,6 +297,7 @@ fn optimize_job(
         bar.finish_and_clear();
         let mut result = result?;
         result.notes.extend(job.unused_inputs(&result.before.0));
+        result.notes.extend(extras.slack.into_iter().flat_map(|it| it.notes.clone()));
         if job.files.iter().any(|source| is_streams(&source.file.bytes)) {
             result.notes.push(
                 "the program has streams already, which stay as they are: joulepath refresh makes \
@@ -283,9 +306,9 @@ fn optimize_job(
             );
         }
         job.streams.restore_stated_data(&mut result);
-        listing::add(&mut result, &job.input, &job.files);
+        result.notes.extend(listing::add(&mut result.outputs, &job.input, &job.files));
         if lists {
-            backinfo::add(&mut result, &job.input);
+            result.notes.extend(backinfo::add(&mut result.outputs, &job.input));
         }
         result
     };
@@ -294,7 +317,12 @@ fn optimize_job(
     let places = Places::new(&sources);
     let mut written = Vec::new();
     if let Some(folder) = &args.out {
-        written.extend(write_folder(folder, original, &result.outputs, backup)?);
+        written.extend(write_folder(
+            folder,
+            (&original.files, &original.streams.modules),
+            &result.outputs,
+            backup,
+        )?);
     }
     if args.in_place {
         written.extend(write_in_place(paths, original, &result)?);
@@ -313,8 +341,11 @@ fn optimize_job(
         || {
             let mut value =
                 report::json::retrofit(&job.model, &job.entry, places, &result, &written);
-            if let Some(applied) = applied {
+            if let Some(applied) = extras.applied {
                 value["applied"] = report::suggestions::applied_json(applied);
+            }
+            if let Some(planned) = extras.slack {
+                value["waits"] = report::slack::json(&job.model, planned, &result);
             }
             value
         },
@@ -322,7 +353,8 @@ fn optimize_job(
             if args.diff || job.is_refreshed() {
                 diff(original, &result)
             } else {
-                report::text::retrofit(&job.model, places, &result)
+                let slack = extras.slack.map(|it| report::slack::text(&job.model, it, &result));
+                report::text::retrofit(&job.model, places, &result) + &slack.unwrap_or_default()
             }
         },
     )?;
@@ -352,7 +384,8 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
     if args.dwell_pose.is_some() && args.emit != EmitArg::Absj {
         bail!("--dwell-pose needs streams: leave out --emit, or give --emit absj");
     }
-    let has_all_tasks = args.only_task || whole_backup(&args.program.cell.paths, job).is_some();
+    let has_all_tasks =
+        args.only_task || whole_backup(&args.program.cell.paths, &job.input).is_some();
     Ok(Settings {
         entry: job.entry.clone(),
         options: job.options.clone(),
@@ -464,21 +497,4 @@ fn undo_in_place(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
         common::notes(cell.quiet, &done);
     }
     common::print(args.program.format, || serde_json::json!({ "undone": done }), String::new)
-}
-
-fn diff(job: &Job, result: &Retrofit) -> String {
-    let mut text = String::new();
-    for file in &result.outputs {
-        let before = current_bytes(job, file).unwrap_or_default();
-        if before == file.bytes {
-            continue;
-        }
-        let charset = charset(&file.bytes);
-        let (old, new) = (charset.decode(&before), charset.decode(&file.bytes));
-        let from =
-            if before.is_empty() { "/dev/null".to_owned() } else { format!("a/{}", file.path) };
-        let diff = TextDiff::from_lines(old.as_ref(), new.as_ref());
-        text.push_str(&diff.unified_diff().header(&from, &format!("b/{}", file.path)).to_string());
-    }
-    text
 }

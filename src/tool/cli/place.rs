@@ -77,7 +77,7 @@ pub(super) fn run(args: &PlaceArgs) -> anyhow::Result<ExitCode> {
     )?;
     let quiet = args.program.cell.quiet;
     let paths = args.program.cell.paths.as_slice();
-    let backup = whole_backup(paths, &job);
+    let backup = whole_backup(paths, &job.input);
     if let (Some(folder), None) = (&args.out, backup) {
         refuse_nested_output(folder, paths)?;
     }
@@ -103,7 +103,7 @@ pub(super) fn run(args: &PlaceArgs) -> anyhow::Result<ExitCode> {
         match found.best.get(chosen - 1) {
             Some(best) => {
                 let outputs = outputs(&job, &best.placed)?;
-                written.extend(write_folder(folder, &job, &outputs, backup)?);
+                written.extend(write_folder(folder, (&job.files, &[]), &outputs, backup)?);
             }
             None => common::note(quiet, "nothing is written: no placement saves energy"),
         }

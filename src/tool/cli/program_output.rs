@@ -5,17 +5,19 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
+use similar::TextDiff;
 
 use super::common::Job;
+use super::input::Input;
 use super::output::is_same_file;
 use super::{output, undo};
-use crate::rapid::text::{FileId, SourceFile};
-use crate::tool::retrofit::{OutputFile, OutputKind, Retrofit};
+use crate::rapid::text::{FileId, SourceFile, charset};
+use crate::tool::retrofit::{OutputFile, OutputKind, Retrofit, Source};
 
 /// The backup, if the command line names all of it.
-pub(super) fn whole_backup<'j>(paths: &[PathBuf], job: &'j Job) -> Option<&'j Path> {
+pub(super) fn whole_backup<'i>(paths: &[PathBuf], input: &'i Input) -> Option<&'i Path> {
     let [path] = paths else { return None };
-    let [(root, _)] = job.input.backups.as_slice() else { return None };
+    let [(root, _)] = input.backups.as_slice() else { return None };
     (path.canonicalize().ok()? == *root).then_some(root.as_path())
 }
 
@@ -35,14 +37,15 @@ fn program_folder(paths: &[PathBuf], job: &Job) -> anyhow::Result<PathBuf> {
     shared.context("no file or folder given")
 }
 
-/// The files of a backup that are not outputs, with their relative paths.
+/// The files of a backup that are not outputs, with their relative paths, without `removed`.
 fn rest_of_backup(
     root: &Path,
     out: &Path,
-    (job, outputs): (&Job, &[OutputFile]),
+    removed: &[PathBuf],
+    outputs: &[OutputFile],
 ) -> anyhow::Result<Vec<(PathBuf, Vec<u8>)>> {
     let known: BTreeSet<PathBuf> = outputs.iter().map(|file| PathBuf::from(&file.path)).collect();
-    let is_stream = |path: &Path| job.streams.modules.iter().any(|one| is_same_file(one, path));
+    let is_removed = |path: &Path| removed.iter().any(|one| is_same_file(one, path));
     let mut rest = Vec::new();
     let mut folders = vec![root.to_owned()];
     while let Some(folder) = folders.pop() {
@@ -53,7 +56,7 @@ fn rest_of_backup(
             let relative = path.strip_prefix(root).unwrap_or(&path).to_owned();
             if kind.is_dir() && path != out {
                 folders.push(path);
-            } else if kind.is_file() && !known.contains(&relative) && !is_stream(&path) {
+            } else if kind.is_file() && !known.contains(&relative) && !is_removed(&path) {
                 let bytes = std::fs::read(&path)
                     .with_context(|| format!("cannot read '{}'", path.display()))?;
                 rest.push((relative, bytes));
@@ -88,16 +91,17 @@ pub(super) fn refuse_nested_output(folder: &Path, paths: &[PathBuf]) -> anyhow::
     Ok(())
 }
 
-/// Writes the complete program into a folder; of a backup all files.
+/// Writes the complete program into a folder; of a backup all files but `removed`. `files`: those of
+/// the program.
 pub(super) fn write_folder(
     folder: &Path,
-    job: &Job,
+    (files, removed): (&[Source], &[PathBuf]),
     outputs: &[OutputFile],
     backup: Option<&Path>,
 ) -> anyhow::Result<Vec<String>> {
     for file in outputs {
         let path = folder.join(&file.path);
-        if job.files.iter().any(|source| is_same_file(&path, Path::new(&source.file.path))) {
+        if files.iter().any(|source| is_same_file(&path, Path::new(&source.file.path))) {
             bail!(
                 "'{}' is a file of the program itself; name another folder, or give --in-place, \
                  which keeps the originals",
@@ -108,14 +112,14 @@ pub(super) fn write_folder(
     let rest = match backup {
         Some(root) => {
             let out = std::path::absolute(folder)?;
-            rest_of_backup(root, &out.canonicalize().unwrap_or(out), (job, outputs))?
+            rest_of_backup(root, &out.canonicalize().unwrap_or(out), removed, outputs)?
         }
         None => Vec::new(),
     };
-    let files =
-        new_first(outputs).map(|file| (Path::new(&file.path), encoded(job, file, &file.bytes)));
+    let changed =
+        new_first(outputs).map(|file| (Path::new(&file.path), encoded(files, file, &file.bytes)));
     let unchanged = rest.iter().map(|(path, bytes)| (path.as_path(), Cow::from(bytes)));
-    output::write_folder(folder, files.chain(unchanged))?;
+    output::write_folder(folder, changed.chain(unchanged))?;
     let written = outputs.iter().map(|file| folder.join(&file.path));
     let written = written.chain(rest.iter().map(|(path, _)| folder.join(path)));
     Ok(written.map(|path| path.display().to_string()).collect())
@@ -135,14 +139,17 @@ pub(super) fn write_in_place(
 ) -> anyhow::Result<Vec<String>> {
     let mut changes = Vec::new();
     for file in new_first(&result.outputs) {
-        let (path, after) = (path_in_tree(job, file), encoded(job, file, &file.bytes));
+        let (path, after) = (path_in_tree(job, file), encoded(&job.files, file, &file.bytes));
         let before = match input_file(job, file) {
             Some((path, bytes)) => {
                 // An unreadable file could not be restored.
                 let now = std::fs::read(path).with_context(|| format!("cannot read '{path}'"))?;
                 // For a program with streams, undo restores the text without them.
-                let before =
-                    if job.is_refreshed() { encoded(job, file, bytes) } else { (&now).into() };
+                let before = if job.is_refreshed() {
+                    encoded(&job.files, file, bytes)
+                } else {
+                    (&now).into()
+                };
                 if before == after && now == *after {
                     continue;
                 }
@@ -171,15 +178,15 @@ pub(super) fn write_in_place(
 }
 
 /// Bytes of an output in the encoding of its original file.
-fn encoded<'a>(job: &Job, file: &OutputFile, bytes: &'a [u8]) -> Cow<'a, [u8]> {
-    match file.input.and_then(|i| job.files.get(i)) {
+fn encoded<'a>(files: &[Source], file: &OutputFile, bytes: &'a [u8]) -> Cow<'a, [u8]> {
+    match file.input.and_then(|i| files.get(i)) {
         Some(source) => source.file.stored(bytes),
         None => Cow::Borrowed(bytes),
     }
 }
 
 /// The current content of the user's file for an output, decoded in the same way.
-pub(super) fn current_bytes(job: &Job, file: &OutputFile) -> Option<Vec<u8>> {
+fn current_bytes(job: &Job, file: &OutputFile) -> Option<Vec<u8>> {
     if !job.is_refreshed() {
         return input_file(job, file).map(|(_, bytes)| bytes.to_vec());
     }
@@ -216,4 +223,22 @@ fn path_in_tree(job: &Job, file: &OutputFile) -> PathBuf {
     }
     let root = job.files.first().and_then(|source| source.file.path.strip_suffix(&source.relative));
     PathBuf::from(root.unwrap_or_default()).join(&file.path)
+}
+
+/// The changes of a program as a unified diff.
+pub(super) fn diff(job: &Job, result: &Retrofit) -> String {
+    let mut text = String::new();
+    for file in &result.outputs {
+        let before = current_bytes(job, file).unwrap_or_default();
+        if before == file.bytes {
+            continue;
+        }
+        let charset = charset(&file.bytes);
+        let (old, new) = (charset.decode(&before), charset.decode(&file.bytes));
+        let from =
+            if before.is_empty() { "/dev/null".to_owned() } else { format!("a/{}", file.path) };
+        let diff = TextDiff::from_lines(old.as_ref(), new.as_ref());
+        text.push_str(&diff.unified_diff().header(&from, &format!("b/{}", file.path)).to_string());
+    }
+    text
 }

@@ -9,7 +9,12 @@ use crate::rapid::ir::program::Program;
 use crate::rapid::syntax::{TokenKind, tokenize};
 use crate::rapid::text::{SourceFile, Span};
 
-/// The names of a module of streams.
+/// Beginnings of the names of modules. That of a recorder must not begin like that of streams: the
+/// streams of a program that is recorded would then get other names.
+const STREAMS: &str = "Joulepath";
+const RECORDER: &str = "JlpRecorder";
+
+/// The names of a module of streams or of a recorder.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Names {
     /// Prefix of all names.
@@ -22,19 +27,28 @@ impl Names {
     /// A prefix that no word of the files begins with: data, routines, labels, loop variables, also
     /// signals and modules declared elsewhere. The module name differs from all file names.
     pub fn free(files: &[SourceFile]) -> Names {
+        Names::first_free(files, "jp", STREAMS)
+    }
+
+    /// The same for a recorder.
+    pub fn of_recorder(files: &[SourceFile]) -> Names {
+        Names::first_free(files, "jr", RECORDER)
+    }
+
+    fn first_free(files: &[SourceFile], beginning: &str, module: &str) -> Names {
         let taken = used_words(files);
         let is_free = |beginning: &str| {
             let beginning = beginning.to_lowercase();
             let next = taken.range(beginning.clone()..).next();
             next.is_none_or(|word| !word.starts_with(&beginning))
         };
-        let mut prefix = "jp".to_owned();
+        let mut prefix = beginning.to_owned();
         let mut round = 1;
-        while !is_free(&prefix) || !is_free(&module_name(round)) {
+        while !is_free(&prefix) || !is_free(&numbered(module, round)) {
             round += 1;
-            prefix = format!("jp{round}_");
+            prefix = format!("{beginning}{round}_");
         }
-        Names { module: module_name(round), prefix }
+        Names { module: numbered(module, round), prefix }
     }
 
     /// The name of the module with part `index` (from 0) of the streams.
@@ -132,7 +146,11 @@ fn prefix_number(key: &str) -> Option<usize> {
 }
 
 fn module_name(round: usize) -> String {
-    if round == 1 { "Joulepath".to_owned() } else { format!("Joulepath{round}") }
+    numbered(STREAMS, round)
+}
+
+fn numbered(module: &str, round: usize) -> String {
+    if round == 1 { module.to_owned() } else { format!("{module}{round}") }
 }
 
 /// All words and file names, in lower case.

@@ -8,6 +8,7 @@ use crate::arm::robot::Model;
 use crate::retime::energy::account::base;
 use crate::retime::energy::power::holding_w;
 use crate::retime::motion::Simulation;
+use crate::retime::motion::arrivals::{Anchor, anchored};
 use crate::retime::motion::timeline::{Event, WaitBasis, What};
 use crate::retime::optimize::cycle::{Cycle, Part};
 use crate::retime::optimize::resting::ways;
@@ -32,8 +33,25 @@ pub(super) fn cycle(
             parts[*event] = Part::Run(run);
         }
     }
+    let mut number = 0;
     for (index, event) in simulation.events.iter().enumerate() {
         let What::Wait(record) = &event.what else { continue };
+        number += 1;
+        let own = settings.options.arrivals.iter().find(|arrival| arrival.wait + 1 == number);
+        if let Some(arrival) = own {
+            let since = match arrival.after {
+                Anchor::Own => continue,
+                Anchor::Cycle => simulation.repeats_from.and_then(|first| first.checked_sub(1)),
+                anchor => anchored(&simulation.events, anchor),
+            };
+            parts[index] = Part::Arrival {
+                since,
+                delay: arrival.delay_s,
+                least: lateness(simulation, &original.lowered, since, index).min(event.duration),
+                holding_w: holding_w(model, &record.load, &record.q).iter().sum(),
+            };
+            continue;
+        }
         let Some(signal) = record.wait.signal.as_ref().map(|name| name.to_lowercase()) else {
             continue;
         };

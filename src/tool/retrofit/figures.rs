@@ -25,7 +25,7 @@ pub struct Figures {
 
 /// Time of a RAPID instruction, ms. Assumed: ABB publishes none; a PLC cycle is of this order. To
 /// be replaced by a measurement on a controller.
-pub(super) const INSTRUCTION_MS: f64 = 0.05;
+pub(in crate::tool) const INSTRUCTION_MS: f64 = 0.05;
 
 /// Cycle times if the assumed limits of acceleration and torque are too high.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -77,7 +77,7 @@ pub(super) fn by_file(edits: impl IntoIterator<Item = Edit>) -> BTreeMap<usize, 
 }
 
 /// All files of the program, with these edits; `None` if edits overlap.
-pub(super) fn with_edits(
+pub(in crate::tool) fn with_edits(
     files: &[Source],
     edits: impl Iterator<Item = Edit>,
 ) -> Option<Vec<OutputFile>> {

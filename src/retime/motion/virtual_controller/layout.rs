@@ -7,6 +7,7 @@ use super::load::effective_load;
 use super::state::VirtualController;
 use crate::rapid::ir::exec::WaitResult;
 use crate::rapid::ir::movement::{Movement, Stop, Wait};
+use crate::retime::motion::arrivals::{Anchor, Arrival, anchored, next_wait};
 use crate::retime::motion::run_plan::{Planned, RunDraft};
 use crate::retime::motion::timeline::{Event, MoveRecord, Run, WaitBasis, WaitRecord, What};
 
@@ -135,9 +136,43 @@ impl VirtualController<'_> {
 
     /// Time of the input of a wait, s from the start of the cycle, if the user states it.
     pub(super) fn input_at(&self, wait: &Wait) -> Option<f64> {
+        self.arrival_at().or_else(|| self.stated_at(wait))
+    }
+
+    /// What is known of the next wait by its place in the cycle.
+    fn arrival(&self) -> Option<&Arrival> {
+        let arrivals = &self.options.arrivals;
+        let number = if arrivals.is_empty() { 0 } else { next_wait(&self.events) };
+        arrivals.iter().find(|arrival| arrival.wait == number)
+    }
+
+    /// The time of the input by the place of the wait.
+    fn arrival_at(&self) -> Option<f64> {
+        let arrival = self.arrival()?;
+        let from = match arrival.after {
+            Anchor::Cycle => {
+                let first = self.repeats_from.and_then(|first| self.events.get(first));
+                first.map_or(0.0, |event| event.t_start)
+            }
+            Anchor::Own => self.time - self.ahead,
+            anchor => {
+                let event = &self.events[anchored(&self.events, anchor)?];
+                event.t_start + event.duration
+            }
+        };
+        Some(from + arrival.delay_s)
+    }
+
+    /// The time of the input by its name.
+    fn stated_at(&self, wait: &Wait) -> Option<f64> {
         let key = wait.signal.as_ref()?.to_lowercase();
         let delay = self.options.inputs.get(&key)?;
         Some(self.waited.get(&key).copied().unwrap_or(0.0) + delay)
+    }
+
+    /// Whether the next wait keeps its length when the robot comes later.
+    fn keeps_length(&self) -> bool {
+        self.arrival().is_some_and(|arrival| arrival.after == Anchor::Own)
     }
 
     /// Time at a stop point in addition to settling, s.
@@ -172,6 +207,7 @@ impl VirtualController<'_> {
                         self.waited_last = WaitResult::TimedOut;
                         (most, WaitBasis::Stated)
                     }
+                    _ if self.keeps_length() => (rest, WaitBasis::Stated),
                     _ => (rest, WaitBasis::Input),
                 }
             }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::retime::motion::arrivals::Arrival;
 use crate::retime::path::joint_path::Joints;
 
 /// Inputs of a simulation besides the program and the robot.
@@ -13,6 +14,8 @@ pub struct Options {
     /// Delay of an input (s) by lower-case name, from the start of the cycle or from the end of the
     /// last wait for it.
     pub inputs: BTreeMap<String, f64>,
+    /// Arrivals for single waits, which precede those of `inputs`.
+    pub arrivals: Vec<Arrival>,
     /// Levels of inputs, by lower-case name.
     pub levels: BTreeMap<String, f64>,
     /// Override of all speeds, 1 = 100 %.

@@ -1,6 +1,7 @@
 //! Results as one self-contained HTML page: style sheet and plots inline, no scripts, no external
 //! resources.
 
+mod campaign;
 mod cycle_curve;
 mod diagnose;
 mod energy_time;
@@ -12,6 +13,7 @@ mod movements;
 mod page;
 mod placement;
 mod proof;
+mod prove;
 mod reliability;
 mod samples;
 mod segments;
@@ -19,14 +21,18 @@ mod simulation;
 mod source;
 mod standstill;
 mod summary;
+mod waits;
 mod ways;
 
+pub use campaign::campaign_report;
 pub use diagnose::{Excerpt, Line, Pictures, diagnose_report};
 pub use grades::grades_report;
 pub use identify::{Traces, identify_report};
 pub use page::ReportError;
 pub use placement::place_report;
+pub use prove::prove_report;
 pub use simulation::simulate_report;
+pub use waits::waits_report;
 
 use tera::Context;
 

@@ -5,6 +5,7 @@
 mod cells;
 mod escape;
 mod frame;
+mod gantt;
 mod plot;
 mod polyline;
 mod scale;
@@ -12,6 +13,7 @@ mod scale;
 pub use cells::{Cells, Shade};
 pub use escape::escape;
 pub use frame::{Frame, Size};
+pub use gantt::{Bar, Row, gantt, histogram};
 pub use plot::{Curve, NEAR, Plot, Rule};
 pub use polyline::{MAX_POINTS, points, simplify};
 pub use scale::Scale;
