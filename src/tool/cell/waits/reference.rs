@@ -78,7 +78,7 @@ pub(super) struct Moment {
     /// Where the program set the output.
     pub(super) place: Option<Place>,
     /// Whether the robot waits for a signal before it moves again, which is the answer to an output; of
-    /// the end of a wait, whether it was such an answer.
+    /// the end of a wait and of a signal, whether it is such an answer.
     pub(super) answered: bool,
 }
 
@@ -125,19 +125,29 @@ fn of_cycle(cycle: &Cycle) -> Vec<Moment> {
     moments.extend(cycle.events.iter().filter_map(of));
     moments.sort_by(|a, b| a.t.total_cmp(&b.t));
     answers(&mut moments, cycle);
+    let mut ends = Vec::new();
+    let mut answering = BTreeSet::new();
     for visit in &cycle.visits {
-        let (Some(t), Some(length)) = (visit.ended, visit.length()) else { continue };
-        if visit.by_limit || length <= AT_ONCE_S {
-            continue;
-        }
-        let cmd = moments.iter().rev().find(|moment| moment.t <= visit.came).map_or(0, |m| m.cmd);
-        let kind = Kind::End(visit.place.clone());
-        let standing = moments.iter().rev().skip_while(|moment| moment.t > visit.came);
-        let answered = standing
+        let before = || moments.iter().rev().skip_while(|moment| moment.t > visit.came);
+        let answered = before()
             .take_while(|moment| !matches!(moment.kind, Kind::Start(_) | Kind::Arrive(_)))
-            .any(|moment| moment.answered && matches!(moment.kind, Kind::Output(..)));
-        moments.push(Moment { t, cmd, kind, place: Some(visit.place.clone()), answered });
+            .any(|moment| moment.answered);
+        if let Some(signal) = visit.signal.as_deref().filter(|_| answered) {
+            answering.insert(signal);
+        }
+        let (Some(t), Some(length)) = (visit.ended, visit.length()) else { continue };
+        if !visit.by_limit && length > AT_ONCE_S {
+            let cmd = before().next().map_or(0, |moment| moment.cmd);
+            let kind = Kind::End(visit.place.clone());
+            ends.push(Moment { t, cmd, kind, place: Some(visit.place.clone()), answered });
+        }
     }
+    for moment in &mut moments {
+        if let Kind::Signal(name, _) = &moment.kind {
+            moment.answered = answering.contains(name.as_str());
+        }
+    }
+    moments.extend(ends);
     moments.sort_by(|a, b| a.t.total_cmp(&b.t));
     moments
 }

@@ -140,7 +140,7 @@ fn odds(key: &Key, candidate: &Candidate) -> f64 {
         Kind::Output(..) => PENDING_ODDS,
         Kind::End(place) if *place == key.place => PENDING_ODDS,
         Kind::Signal(name, _) if Some(name) == key.signal.as_ref() => PENDING_ODDS,
-        Kind::End(_) if candidate.answered => UNSEEN_ODDS,
+        Kind::End(_) | Kind::Signal(..) if candidate.answered => UNSEEN_ODDS,
         Kind::End(_) | Kind::Signal(..) => OTHER_ODDS,
         Kind::Cycle | Kind::Start(_) | Kind::Arrive(_) => UNSEEN_ODDS,
     }
