@@ -117,6 +117,66 @@ fn places_of_outputs_stay() {
     assert!(!has_height(&PROGRAM.replace(passed, stopped)));
 }
 
+/// What an order, an acceleration or a configuration costs is found out, and the edit mends it.
+#[test]
+fn settings_configurations_and_orders_are_suggested() {
+    let slow = PROGRAM.replace(
+        "MoveAbsJ jHome,v1000,fine,tGrip;\nMoveJ",
+        "AccSet 30,30;\nMoveAbsJ jHome,v1000,fine,tGrip;\nMoveJ",
+    );
+    assert!(slow != PROGRAM && suggests(&slow, "in place of 30,30"));
+    assert!(!suggests(PROGRAM, "AccSet"));
+    // Axis 6 goes a turn to pB and back.
+    let turned = PROGRAM.replace(
+        "[0,-1,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\nCONST robtarget pRound",
+        "[0,-1,4,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\nCONST robtarget pRound",
+    );
+    assert!(turned != PROGRAM && suggests(&turned, "axis 6 a turn back at pB"));
+    assert!(!suggests(PROGRAM, "turn back at pB"));
+}
+
+/// Four places on a circle, in a bad order. Only the comments make the order free.
+#[test]
+fn marked_visits_get_their_best_order() {
+    let visit = |order: &[i32]| {
+        let calls: Vec<String> = order.iter().map(|n| format!("Visit {n};\n")).collect();
+        calls.concat()
+    };
+    let text = |visits: &str| {
+        let head = PROGRAM.split("PROC main").next().unwrap();
+        format!(
+            "{head}PROC Visit(num n)\nMoveJ Offs(pA,0,130*n,100),v1000,z10,tGrip;\nMoveL Offs(pA,0,130*n,0),v300,fine,tGrip;\n\
+             PulseDO doTest;\nWaitTime 0.2;\nMoveL Offs(pA,0,130*n,100),v1000,z10,tGrip;\nENDPROC\n\
+             PROC main()\nMoveAbsJ jHome,v1000,fine,tGrip;\n{visits}MoveAbsJ jHome,v1000,fine,tGrip;\nENDPROC\nENDMODULE\n"
+        )
+    };
+    let bad = [1, 3, 0, 4];
+    let marked =
+        format!("! joulepath: free order\n{}! joulepath: end of free order\n", visit(&bad));
+    assert!(!suggests(&text(&visit(&bad)), "order Visit"));
+    let folder = folder();
+    fs::write(folder.path().join("in/m.mod"), text(&marked)).unwrap();
+    let result = json(folder.path(), &["optimize", "in", "--suggest", "--point-estimate"]);
+    let all = result["suggestions"].as_array().unwrap();
+    let is_order = |one: &&Value| one["change"].as_str().unwrap().contains("order Visit");
+    let found = all.iter().find(is_order).unwrap();
+    let energy = |order: &[i32]| {
+        fs::write(folder.path().join("one.mod"), text(&visit(order))).unwrap();
+        number(&json(folder.path(), &["simulate", "one.mod"]), "/energy_j")
+    };
+    let mut least = f64::INFINITY;
+    for a in bad {
+        for b in bad.into_iter().filter(|b| *b != a) {
+            for c in bad.into_iter().filter(|c| *c != a && *c != b) {
+                let d = bad.into_iter().find(|d| ![a, b, c].contains(d)).unwrap();
+                least = least.min(energy(&[a, b, c, d]));
+            }
+        }
+    }
+    let promised = energy(&bad) - number(found, "/saving_j");
+    assert!((promised - least).abs() < ROUNDING, "{promised} J, the best order takes {least} J");
+}
+
 #[test]
 fn applied_suggestions_and_streams_are_one_program() {
     let folder = folder();

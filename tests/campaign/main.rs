@@ -5,6 +5,8 @@
 
 #[path = "../command/mod.rs"]
 mod command;
+#[path = "../plants/program.rs"]
+mod program;
 #[path = "../support/mod.rs"]
 mod support;
 
@@ -13,12 +15,12 @@ use std::path::Path;
 
 use command::{json, number, refused};
 use joulepath::arm::robot::Model;
-use joulepath::examine::plant::{Conditions, Kind, Plant, Script, Step};
-use joulepath::retime::energy::{EnergyParts, account};
-use joulepath::retime::motion::timeline::What;
-use joulepath::retime::motion::{Options, simulate};
-use joulepath::tool::retrofit::{Source, read_program};
+use joulepath::examine::plant::{Conditions, Kind, Plant, Script};
+use joulepath::retime::motion::Options;
+use joulepath::tool::retrofit::Source;
+use program::{retimed, script, standing};
 use serde_json::Value;
+use support::simulated;
 
 /// Recorded cycles of each shift.
 const CYCLES: usize = 120;
@@ -29,61 +31,10 @@ const MOST_EARLY: usize = 1;
 /// The machine that makes the robot wait.
 const SLACK: (&str, Kind) = ("diMcReady", Kind::Machine);
 
-/// The cycle of a program as steps of the plant: a movement for each run from rest to rest.
-fn script(model: &Model, files: &[Source]) -> Script {
-    let (program, entry) = read_program(files, "main").unwrap();
-    let simulation = simulate(&program, entry, model, &Options::default());
-    let energies = account(model, &simulation);
-    let place = |span: joulepath::rapid::text::Span| {
-        let source = &files[span.file.0 as usize];
-        (source.relative.clone(), source.file.position(span.start).line as usize)
-    };
-    let steps = simulation.events.iter().zip(&energies.events).filter_map(|(event, parts)| {
-        Some(match &event.what {
-            What::Run(run) => {
-                let (file, line) = place(run.moves.last()?.movement.span);
-                let energy_j = parts.iter().map(EnergyParts::motion_energy_j).sum();
-                Step::Move { file, line, duration_s: event.duration, energy_j, stops: true }
-            }
-            What::Wait(record) => {
-                let (file, line) = place(record.wait.span);
-                match &record.wait.signal {
-                    Some(signal) => Step::Wait { file, line, signal: signal.to_string() },
-                    None => Step::Pause { file, line, seconds: event.duration },
-                }
-            }
-            What::Output(output, _) => {
-                let (file, line) = place(output.span);
-                let level = u8::from(&*output.value == "1");
-                Step::Output { file, line, signal: output.signal.to_string(), level }
-            }
-            What::Left(_) => return None,
-        })
-    });
-    Script::single(steps.collect())
-}
-
-/// The steps of the original with the durations and energies of another program's movements.
-fn retimed(original: &Script, other: &Script) -> Script {
-    let mut changed = original.clone();
-    let new: Vec<(f64, f64)> = moves(other);
-    assert_eq!(moves(original).len(), new.len());
-    let mut new = new.into_iter();
-    for step in &mut changed.variants[0].steps {
-        if let Step::Move { duration_s, energy_j, .. } = step {
-            (*duration_s, *energy_j) = new.next().unwrap();
-        }
-    }
-    changed
-}
-
-fn moves(script: &Script) -> Vec<(f64, f64)> {
-    let steps = script.variants[0].steps.iter();
-    let timed = steps.filter_map(|step| match step {
-        Step::Move { duration_s, energy_j, .. } => Some((*duration_s, *energy_j)),
-        _ => None,
-    });
-    timed.collect()
+/// The cycle of a program as steps of the plant.
+fn steps(model: &Model, files: &[Source]) -> Script {
+    let simulation = simulated(model, files, &Options::default());
+    script(model, files, &simulation, standing(model, &simulation))
 }
 
 /// The files of a folder as a program.
@@ -144,7 +95,7 @@ fn the_example_goes_from_its_first_log_to_a_proof() {
     refused(&["campaign", path, "--program", "fixtures/pick_place"], "is a campaign already");
 
     let model = support::irb1600();
-    let original = script(&model, &program(Path::new("fixtures/pick_place")));
+    let original = steps(&model, &program(Path::new("fixtures/pick_place")));
     let plant = waiting_plant(&original);
     shift(&plant, &original, 1, &campaign.join("recorded.json"), &campaign.join("logs/before"));
     let planned = call(&[]);
@@ -158,7 +109,7 @@ fn the_example_goes_from_its_first_log_to_a_proof() {
         serde_json::from_slice(&fs::read(campaign.join("optimized.json")).unwrap()).unwrap();
     assert!(!optimized["waits"]["used"].as_array().unwrap().is_empty(), "{}", optimized["waits"]);
 
-    let new = retimed(&original, &script(&model, &program(&campaign.join("optimized"))));
+    let new = retimed(&original, &steps(&model, &program(&campaign.join("optimized"))));
     shift(&plant, &new, 1, &campaign.join("recorded-after.json"), &campaign.join("logs/after"));
     let proved = call(&[]);
     assert_eq!(proved["finished"], true, "{proved}");

@@ -2,9 +2,12 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
 
-use joulepath::examine::plant::{Plant, Script, Step, Truth};
+mod stations;
+
+use joulepath::examine::plant::{Plant, Truth};
 use joulepath::tool::cell::events::read;
 use joulepath::tool::cell::waits::{Log, WaitKind, find};
+use stations::script;
 
 /// Cells, and recorded cycles of each.
 const CELLS: u64 = 50;
@@ -15,39 +18,6 @@ const WRONG: f64 = 0.01;
 const RIGHT: f64 = 0.95;
 /// Least share of the waits of a kind that are told without an experiment.
 const TOLD: f64 = 0.5;
-
-/// A program of several stations: ways there, an output, a wait, sometimes a time, ways back.
-fn script(seed: u64) -> Script {
-    let mut draws = fastrand::Rng::with_seed(seed);
-    let mut steps = Vec::new();
-    let mut line = 10;
-    let file = || "main.mod".to_owned();
-    for station in 0..draws.usize(3..8) {
-        let mut go = |steps: &mut Vec<Step>, draws: &mut fastrand::Rng| {
-            for last in [false, true] {
-                line += 1;
-                let duration_s = 0.4 + 2.5 * draws.f64();
-                let energy_j = 60.0 * duration_s * (0.5 + draws.f64());
-                steps.push(Step::Move { file: file(), line, duration_s, energy_j, stops: last });
-            }
-            line += 1;
-            line
-        };
-        let at = go(&mut steps, &mut draws);
-        if draws.bool() {
-            let signal = format!("doStation{station}");
-            steps.push(Step::Output { file: file(), line: at, signal, level: 1 });
-        }
-        let signal = format!("diStation{station}");
-        steps.push(Step::Wait { file: file(), line: at + 1000, signal });
-        if draws.bool() {
-            let seconds = 0.2 + draws.f64();
-            steps.push(Step::Pause { file: file(), line: at + 2000, seconds });
-        }
-        go(&mut steps, &mut draws);
-    }
-    Script::single(steps)
-}
 
 #[test]
 fn slack_is_told_from_process_in_cells_of_another_simulator() {

@@ -128,9 +128,10 @@ fn attempt(
         match (before, after) {
             (Some(before), Some(after)) => {
                 let spared = before.account.total.energy_j() - after.account.total.energy_j();
-                if spared < -ROUNDING
-                    || !same_process(&before.simulation, &after.simulation, Kept::Waits)
-                {
+                let is_same = job.model.is_some_and(|model| {
+                    same_process(model, &before.simulation, &after.simulation, Kept::Waits)
+                });
+                if spared < -ROUNDING || !is_same {
                     return None;
                 }
                 better |= spared > ROUNDING;

@@ -97,7 +97,7 @@ impl Ways<'_> {
 
     fn judged(&self, point: Vec<f64>, today: &Today, refused: &mut Refusals) -> Tried {
         let is_sound = |(_, cycle): &(Placed, Simulated)| {
-            same_process(&today.cycle.simulation, &cycle.simulation, Kept::Order)
+            same_process(self.cell.model, &today.cycle.simulation, &cycle.simulation, Kept::Order)
         };
         let Some((placed, cycle)) = self.cycle_at(&point).filter(is_sound) else {
             refused.reach += 1;

@@ -9,18 +9,11 @@ const MARK: &[u8] = b"joulepath: free";
 
 /// The movement and wait statements that have the comment on their last line.
 pub fn freed(file: &SourceFile) -> Vec<Span> {
-    if memchr::memmem::find(&file.bytes, MARK).is_none() {
+    let marks = comments(file, MARK);
+    if marks.is_empty() {
         return Vec::new();
     }
     let parse = syntax::parse(&file.bytes);
-    let marks: Vec<u32> = parse
-        .tree
-        .root()
-        .all_tokens()
-        .filter(|token| token.kind() == TokenKind::Comment)
-        .filter(|token| token.text(&file.bytes).get(1..).unwrap_or_default().trim_ascii() == MARK)
-        .map(|token| file.position(token.range().start).line)
-        .collect();
     let calls = parse.tree.nodes().filter(|node| node.kind() == NodeKind::CallStatement);
     let free = calls.filter(|node| {
         let name = node.callee().map(|name| String::from_utf8_lossy(name.text(&file.bytes)));
@@ -28,6 +21,20 @@ pub fn freed(file: &SourceFile) -> Vec<Span> {
     });
     free.map(|node| Span { file: file.id, start: node.range().start, end: node.range().end })
         .filter(|span| marks.contains(&file.position(span.end).line))
+        .collect()
+}
+
+/// The lines with a comment of this text, without `!` and white space.
+pub(in crate::tool) fn comments(file: &SourceFile, text: &[u8]) -> Vec<u32> {
+    if memchr::memmem::find(&file.bytes, text).is_none() {
+        return Vec::new();
+    }
+    let parse = syntax::parse(&file.bytes);
+    let tokens = parse.tree.root().all_tokens();
+    let is_it = |comment: &[u8]| comment.get(1..).unwrap_or_default().trim_ascii() == text;
+    tokens
+        .filter(|token| token.kind() == TokenKind::Comment && is_it(token.text(&file.bytes)))
+        .map(|token| file.position(token.range().start).line)
         .collect()
 }
 

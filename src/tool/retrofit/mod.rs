@@ -63,6 +63,7 @@ pub(in crate::tool) use figures::INSTRUCTION_MS;
 pub use figures::{Figures, LowerLimits, Retrofit, Segment, SegmentKind, Verification};
 pub use files::{OutputFile, OutputKind, Source, read_again};
 pub(in crate::tool) use files::{file_and_line, with_edits};
+pub(in crate::tool) use freed::comments;
 pub use freed::freed;
 pub use padding::Padding;
 pub use pipeline::retrofit;

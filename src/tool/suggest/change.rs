@@ -29,5 +29,5 @@ pub(super) fn changed(
     let files = edited(cell, edits)?;
     let after = Cell { files: &files, ..cell }.simulated().ok()?;
     let is_in_time = after.simulation.cycle_s <= before.cycle_s + TIME_TOLERANCE;
-    (is_in_time && same_process(before, &after.simulation, kept)).then_some(after)
+    (is_in_time && same_process(cell.model, before, &after.simulation, kept)).then_some(after)
 }

@@ -26,6 +26,8 @@ pub(super) enum Offers {
     List(Vec<Offer>),
     /// Any shift of a point.
     Shift(Shift),
+    /// Any order of visits.
+    Order(Visits),
 }
 
 /// One change.
@@ -61,6 +63,30 @@ impl Shift {
                 span: self.span,
                 text: format!("[{}]", moved.collect::<Vec<_>>().join(",")).into_bytes(),
             }],
+        }
+    }
+}
+
+/// Statements whose order is free.
+pub(super) struct Visits {
+    pub(super) spans: Vec<Span>,
+    pub(super) texts: Vec<String>,
+}
+
+/// Longest part of a statement in a title.
+const SHOWN: usize = 30;
+
+impl Visits {
+    /// The offer of an order: the statement with the number `order[i]` in the place of number i.
+    pub(super) fn offer(&self, order: &[usize]) -> Offer {
+        let shown = |of: &usize| self.texts[*of].chars().take(SHOWN).collect::<String>();
+        let edit = |(span, of): (&Span, &usize)| Edit {
+            span: *span,
+            text: self.texts[*of].clone().into_bytes(),
+        };
+        Offer {
+            title: format!("order {}", order.iter().map(shown).collect::<Vec<_>>().join(" ")),
+            edits: self.spans.iter().zip(order).map(edit).collect(),
         }
     }
 }

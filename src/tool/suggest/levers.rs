@@ -13,6 +13,9 @@ pub(super) fn levers(context: &Context<'_>, findings: &[Finding]) -> Vec<Lever> 
     all.extend(super::heights::levers(context));
     all.extend(super::speeds::levers(context));
     all.extend(super::points::levers(context));
+    all.extend(super::configurations::levers(context));
+    all.extend(super::accelerations::levers(context));
+    all.extend(super::orders::levers(context));
     all
 }
 

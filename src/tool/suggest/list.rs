@@ -5,8 +5,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use super::change::{changed, edited};
-use super::lever::{Lever, Offer, Offers, Shift};
+use super::lever::{Lever, Offer, Offers};
 use super::levers::levers;
+use super::search::{Tried, ordered, shifted};
 use super::swept::Swept;
 use crate::rapid::text::{Edit, SourceFile, Span};
 use crate::retime::energy::EnergyParts;
@@ -20,10 +21,6 @@ use crate::tool::retrofit::{Cell, RetrofitError, Simulated, Source, read_program
 
 /// Least saving of a suggestion, of the energy of the cycle.
 const LEAST: f64 = 5e-4;
-/// How often the step of a shift is halved.
-const HALVINGS: usize = 2;
-/// Most steps of one size.
-const STEPS: usize = 6;
 
 /// A change that a person has to approve.
 #[derive(Clone, Debug)]
@@ -174,7 +171,7 @@ impl Suggestions {
 }
 
 /// The offer of a lever that saves most, and its cycle; `None` if none saves enough.
-fn best_offer(cell: Cell<'_>, before: &Cycle, lever: &Lever) -> Option<(Offer, Simulated)> {
+fn best_offer(cell: Cell<'_>, before: &Cycle, lever: &Lever) -> Option<Tried> {
     let energy = |of: &Simulated| of.account.total.energy_j();
     let least = (1.0 - LEAST) * before.account.total.energy_j();
     let after = |offer: Offer| {
@@ -187,43 +184,7 @@ fn best_offer(cell: Cell<'_>, before: &Cycle, lever: &Lever) -> Option<(Offer, S
             all.min_by(|(_, a), (_, b)| energy(a).total_cmp(&energy(b)))
         }
         Offers::Shift(shift) => shifted(shift, before.account.total.energy_j(), &after),
+        Offers::Order(visits) => ordered(visits, before.account.total.energy_j(), &after),
     };
     best.filter(|(_, after)| energy(after) <= least)
-}
-
-/// The best shift of a point by a pattern search along its axes (R. Hooke, T. Jeeves, J. ACM 8, 1961).
-/// `least`: energy without a shift, J; `after`: an offer with its cycle, if that is possible.
-fn shifted(
-    shift: &Shift,
-    mut least: f64,
-    after: &dyn Fn(Offer) -> Option<(Offer, Simulated)>,
-) -> Option<(Offer, Simulated)> {
-    let mut at = vec![0.0; shift.values.len()];
-    let mut best = None;
-    let mut step = shift.step;
-    for _ in 0..=HALVINGS {
-        for _ in 0..STEPS {
-            let start = least;
-            for axis in 0..at.len() {
-                for by in [step, -step] {
-                    let mut next = at.clone();
-                    next[axis] += by;
-                    if next[axis].abs() > shift.most {
-                        continue;
-                    }
-                    let Some((offer, cycle)) = after(shift.offer(&next)) else { continue };
-                    let energy = cycle.account.total.energy_j();
-                    if energy < least {
-                        (least, at, best) = (energy, next, Some((offer, cycle)));
-                        break;
-                    }
-                }
-            }
-            if least >= start {
-                break;
-            }
-        }
-        step *= 0.5;
-    }
-    best
 }

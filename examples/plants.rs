@@ -1,0 +1,287 @@
+//! What the loop in the cell promises, and what simulated plants show, which share no code with it:
+//! `cargo run --release --example plants -- 50`. `docs/cell.md` contains the tables.
+
+#![expect(clippy::unwrap_used, reason = "a failed set-up stops the example")]
+#![expect(clippy::print_stdout, reason = "an example prints")]
+
+#[path = "../tests/plants/program.rs"]
+mod program;
+#[path = "../tests/plants/stations.rs"]
+mod stations;
+#[path = "../tests/support/mod.rs"]
+mod support;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use joulepath::arm::robot::Model;
+use joulepath::examine::plant::{
+    Campaign, Conditions, CycleTruth, Plant, Run, Script, Trouble, campaign,
+};
+use joulepath::learn::log::{ColumnMap, scan};
+use joulepath::retime::motion::timeline::What;
+use joulepath::retime::motion::{Options, simulate};
+use joulepath::tool::cell::events;
+use joulepath::tool::cell::prove::{
+    EventLog, PowerLog, Proof, Settings as Asked, Side, Verdict, prove, stamp,
+};
+use joulepath::tool::cell::slack::{Planned, plan};
+use joulepath::tool::cell::waits::file::WaitsFile;
+use joulepath::tool::cell::waits::{Log, find, record};
+use joulepath::tool::retrofit::{Retrofit, Settings, Source, read_program, retrofit};
+use program::{retimed, script, standing};
+use rayon::prelude::*;
+use support::{irb1600, module_paths, read};
+
+/// Seed of the first plant; the tests use those below.
+const FIRST: u64 = 70_000;
+/// Recorded cycles of a shift.
+const CYCLES: usize = 200;
+/// The stated risk, and what counts as longer, s.
+const RISK: f64 = 0.05;
+const LONGER_S: f64 = 0.01;
+/// Plants that are drawn for each one in which slack may be used up.
+const PLANTS_PER_USE: u64 = 4;
+/// Cycles on each side of a campaign.
+const SIDE: usize = 60;
+
+fn main() {
+    let count = std::env::args().nth(1).and_then(|text| text.parse().ok()).unwrap_or(50);
+    slack(count);
+    proofs(4 * count);
+}
+
+/// A program with its files and the levels of its inputs.
+struct Cell {
+    files: Vec<Source>,
+    levels: BTreeMap<String, f64>,
+}
+
+/// The programs of `fixtures/cells`, and the example of the README.
+fn cells() -> Vec<Cell> {
+    let readme = std::fs::read_to_string(Path::new("fixtures/cells/README.md")).unwrap();
+    let own = Cell { files: support::modules("pick_place"), levels: BTreeMap::new() };
+    readme.lines().filter_map(cell).chain([own]).filter(waits).collect()
+}
+
+/// A row: program, what it does, style, options of the command line.
+fn cell(row: &str) -> Option<Cell> {
+    let columns: Vec<&str> = row.split('|').map(str::trim).collect();
+    let [_, name, _, _, inputs, _] = columns.as_slice() else { return None };
+    let name = name.strip_prefix('`')?.strip_suffix('`')?;
+    let paths = match name.strip_suffix('/') {
+        Some(folder) => module_paths(&format!("cells/{folder}")),
+        None => vec![Path::new("fixtures/cells").join(format!("{name}.mod"))],
+    };
+    let levels = inputs.trim_matches('`').split("--assume ").filter_map(|option| {
+        let (signal, level) = option.trim().split_once('=')?;
+        Some((signal.to_lowercase(), level.parse().unwrap()))
+    });
+    Some(Cell { files: read(&paths), levels: levels.collect() })
+}
+
+/// Whether the cycle waits for a signal.
+fn waits(cell: &Cell) -> bool {
+    let (program, entry) = read_program(&cell.files, "main").unwrap();
+    let simulation = simulate(&program, entry, &irb1600(), &cell.options());
+    simulation.events.iter().skip(simulation.repeats_from.unwrap_or(0)).any(|event| {
+        matches!(&event.what, What::Wait(of) if of.wait.signal.is_some() && of.wait.duration.is_none())
+    })
+}
+
+impl Cell {
+    fn options(&self) -> Options {
+        Options { levels: self.levels.clone(), ..Options::default() }
+    }
+}
+
+/// Another robot of the same type: friction within 15 %, base power within 10 %.
+fn another(model: &Model, seed: u64) -> Model {
+    let mut draws = fastrand::Rng::with_seed(seed);
+    let mut robot = model.clone();
+    let friction = robot.friction.coulomb.iter_mut().chain(&mut robot.friction.viscous);
+    friction.for_each(|value| *value *= 0.85 + 0.3 * draws.f64());
+    robot.drive.base_w *= 0.9 + 0.2 * draws.f64();
+    robot
+}
+
+/// What was promised and what came of it.
+struct Used {
+    /// Share of the cycles that got longer: of the recorded ones, and of those of another day.
+    longer: [f64; 2],
+    /// J for each cycle: promised with its interval, realised on the recorded days, on another day.
+    promised: [f64; 3],
+    realised: [f64; 2],
+}
+
+fn slack(count: u64) {
+    let cells = cells();
+    let model = irb1600();
+    let all = PLANTS_PER_USE * count;
+    let drawn = (0..all).into_par_iter().map(|at| {
+        let cell = &cells[at as usize % cells.len()];
+        used(cell, &model, FIRST + at)
+    });
+    let used: Vec<Used> = drawn.collect::<Vec<_>>().into_iter().flatten().collect();
+    let n = used.len();
+    println!(
+        "slack: {all} plants with a wait for a signal, {n} of them with slack that is used up"
+    );
+    let share = |is: &dyn Fn(&Used) -> bool| used.iter().filter(|of| is(of)).count();
+    for (day, name) in ["the recorded cycles", "other days"].into_iter().enumerate() {
+        println!("{name}:");
+        let within = share(&|of| of.longer[day] <= RISK);
+        println!("  share of longer cycles at most {RISK}: {within} of {n} plants");
+        let mut ratios: Vec<f64> =
+            used.iter().map(|of| of.realised[day] / of.promised[0]).collect();
+        ratios.sort_by(f64::total_cmp);
+        let at = |share: f64| ratios[(share * (n - 1) as f64).round() as usize];
+        println!(
+            "  realised / promised: {:.3} (quartiles {:.3}, {:.3})",
+            at(0.5),
+            at(0.25),
+            at(0.75)
+        );
+        let holds = share(&|of| {
+            let [_, low, high] = of.promised;
+            (low..=high).contains(&of.realised[day])
+        });
+        println!("  interval holds: {holds} of {n}");
+    }
+}
+
+/// `None` if no slack is used up.
+fn used(cell: &Cell, model: &Model, seed: u64) -> Option<Used> {
+    let options = cell.options();
+    let (program, entry) = read_program(&cell.files, "main").unwrap();
+    let simulation = simulate(&program, entry, model, &options);
+    let robot = another(model, seed);
+    let power = standing(&robot, &simulation);
+    let old = script(&robot, &cell.files, &simulation, power);
+    let mut plant = Plant::draw(seed, &old);
+    plant.power = power;
+    let recorded = plant.run(&old, CYCLES, seed);
+    let (planned, result) = retrofitted(cell, model, &recorded, &options)?;
+    let files = emitted(&result);
+    let (after, entry) = read_program(&files, "main").unwrap();
+    let arrivals = Options { arrivals: planned.arrivals.clone(), ..options };
+    let after = simulate(&after, entry, &robot, &arrivals);
+    let new = retimed(&old, &script(&robot, &files, &after, power));
+    let other = plant.run(&old, CYCLES, seed + 1);
+    let changed = [plant.run(&new, CYCLES, seed), plant.run(&new, CYCLES, seed + 1)];
+    let days = [(&recorded, &changed[0]), (&other, &changed[1])];
+    let saving = |share: f64| 0.01 * share * result.original.energy_j;
+    let interval = result.uncertainty.as_ref()?.saving_percent[0];
+    let lost = model.drive.base_w * planned.longer_s;
+    let promised = [result.saving_percent(), interval.low, interval.high]
+        .map(|percent| planned.share * (saving(percent) - lost));
+    Some(Used {
+        longer: days.map(|(before, after)| longer(before, after)),
+        promised,
+        realised: days.map(|(before, after)| {
+            (before.energy_j() - after.energy_j()) / before.cycles.len() as f64
+        }),
+    })
+}
+
+/// Waits of a recorded shift, and the program that uses up their slack.
+fn retrofitted(
+    cell: &Cell,
+    model: &Model,
+    recorded: &Run,
+    options: &Options,
+) -> Option<(Planned, Retrofit)> {
+    let recording = events::read(recorded.events.as_bytes()).unwrap();
+    let log = Log { name: "shift".to_owned(), recording };
+    let found = find(&[log], None).ok()?;
+    let waits = WaitsFile { program: None, ..record(&found) };
+    let (program, entry) = read_program(&cell.files, "main").unwrap();
+    let simulated = |options: &Options| simulate(&program, entry, model, options);
+    let planned = plan(&waits, (&cell.files, ""), RISK, options, &simulated).ok()?;
+    if planned.uses.is_empty() {
+        return None;
+    }
+    let options = Options { arrivals: planned.arrivals.clone(), ..options.clone() };
+    let settings = Settings { options, ..Settings::default() };
+    let result = retrofit(&cell.files, model, &settings, &|_, _| ()).unwrap();
+    assert!(result.verification.passed);
+    Some((planned, result))
+}
+
+/// The emitted program.
+fn emitted(result: &Retrofit) -> Vec<Source> {
+    let is_module = |path: &str| Path::new(path).extension().is_some_and(|end| end == "mod");
+    let files = result.outputs.iter().filter(|file| is_module(&file.path));
+    let file = |(index, file): (usize, &joulepath::tool::retrofit::OutputFile)| {
+        let id = joulepath::rapid::text::FileId(index as u32);
+        joulepath::rapid::text::SourceFile::new(id, file.path.clone(), file.bytes.clone())
+    };
+    support::sources(files.enumerate().map(file).collect())
+}
+
+/// Share of the cycles that got longer.
+fn longer(before: &Run, after: &Run) -> f64 {
+    let pairs = before.cycles.iter().zip(&after.cycles);
+    let is_longer = |(a, b): &(&CycleTruth, &CycleTruth)| b.duration_s > a.duration_s + LONGER_S;
+    pairs.clone().filter(is_longer).count() as f64 / pairs.count() as f64
+}
+
+fn proofs(count: u64) {
+    let kinds: [(&str, f64, &[Trouble]); 12] = [
+        ("the same days", 0.0, &[]),
+        ("the same days", 0.05, &[]),
+        ("other days", 0.0, &[Trouble::OtherDays]),
+        ("other days", 0.05, &[Trouble::OtherDays]),
+        ("other days, machines 20 % slower", 0.0, &[Trouble::OtherDays, Trouble::Machines(1.2)]),
+        ("other days, machines 20 % slower", 0.05, &[Trouble::OtherDays, Trouble::Machines(1.2)]),
+        ("other days, hall at 29 °C", 0.0, &[Trouble::OtherDays, Trouble::Ambient(29.0)]),
+        ("other days, hall at 29 °C", 0.05, &[Trouble::OtherDays, Trouble::Ambient(29.0)]),
+        ("meter 3 % off after", 0.0, &[Trouble::OtherDays, Trouble::Gain(0.97)]),
+        ("meter drifts by 2 % an hour", 0.0, &[Trouble::OtherDays, Trouble::Drift(-0.02)]),
+        ("a fifth swapped", 0.05, &[Trouble::OtherDays, Trouble::Swapped(0.2)]),
+        ("kW after", 0.05, &[Trouble::OtherDays, Trouble::Kilowatts]),
+    ];
+    println!("| campaigns | saved | says `saves` | interval holds | refused |");
+    println!("|---|---|---|---|---|");
+    for (name, saving, troubles) in kinds {
+        let results: Vec<Option<(f64, Proof)>> =
+            (0..count).into_par_iter().map(|at| proved(FIRST + at, saving, troubles)).collect();
+        let proved: Vec<&(f64, Proof)> = results.iter().flatten().collect();
+        let share = |n: usize| 100.0 * n as f64 / proved.len().max(1) as f64;
+        let saves = proved.iter().filter(|(_, proof)| proof.verdict == Verdict::Saves).count();
+        let holds = proved.iter().filter(|(truth, proof)| {
+            proof.saving.interval.is_none_or(|[low, high]| (low..=high).contains(truth))
+        });
+        println!(
+            "| {name} | {:.0} % | {:.1} % | {:.1} % | {} of {count} |",
+            100.0 * saving,
+            share(saves),
+            share(holds.count()),
+            results.len() - proved.len()
+        );
+    }
+}
+
+/// The true saving and the proof of a campaign; `None` if `prove` refuses its logs.
+fn proved(seed: u64, saving: f64, troubles: &[Trouble]) -> Option<(f64, Proof)> {
+    let old = stations::script(seed);
+    let plant = Plant::draw(seed, &old);
+    let usual = Conditions::usual(SIDE, seed);
+    let run = plant.run_in(&old, &usual);
+    let factor = 1.0 - saving * run.energy_j() / run.motion_j();
+    let new: Script = old.with_motion_energy(factor);
+    let Campaign { before, after, saving, .. } = campaign(&plant, (&old, &new), &usual, troubles);
+    let settings = Asked { effect: 0.03, promised: None };
+    Some((saving, prove(&side("before", &before), &side("after", &after), settings).ok()?))
+}
+
+fn side(name: &str, run: &Run) -> Side {
+    let bytes = run.power.as_bytes();
+    let map = ColumnMap::parse("").unwrap().with_products();
+    let log = joulepath::learn::log::read(bytes, &map).unwrap();
+    let (scan, stamp) = (scan(bytes, &map), stamp(bytes));
+    let log = PowerLog { shown: format!("{name}.csv"), log, scan, stamp };
+    let recording = events::read(run.events.as_bytes()).unwrap();
+    let events = EventLog { shown: format!("{name}-events.csv"), recording };
+    Side { logs: vec![log], events: vec![events] }
+}
