@@ -20,13 +20,8 @@ pub struct Planned {
     pub uses: Vec<Use>,
     /// Share of the recorded cycles that take the simulated way.
     pub share: f64,
-    /// Recorded cycles of this way, and how many of them would have become longer if all of the slack
-    /// were used up.
+    /// Recorded cycles of this way.
     pub cycles: usize,
-    /// See `cycles`.
-    pub longer: usize,
-    /// Mean time by which a cycle would have become longer, s.
-    pub longer_s: f64,
     /// What to know about it.
     pub notes: Vec<String>,
 }
@@ -36,10 +31,26 @@ pub struct Planned {
 pub struct Use {
     /// File and line.
     pub place: String,
+    /// Its number in the cycle, from 0.
+    pub number: usize,
     /// How much later, s.
     pub delay_s: f64,
     /// Its median length, s.
     pub median_s: f64,
+    /// Time from the robot's coming to the signal in each recorded cycle, s.
+    slack_s: Vec<f64>,
+}
+
+impl Planned {
+    /// The number of recorded cycles that would have become longer, and the mean time by which, s, if the
+    /// robot had come later by these times (s), one for each of `uses`.
+    #[must_use]
+    pub fn longer(&self, later: &[f64]) -> (usize, f64) {
+        let slack: Vec<&[f64]> = self.uses.iter().map(|it| it.slack_s.as_slice()).collect();
+        let by = |cycle| longer_by(&slack, later, cycle);
+        let sum: f64 = (0..self.cycles).map(by).sum();
+        (longer_cycles(&slack, later), sum / self.cycles.max(1) as f64)
+    }
 }
 
 /// Why recorded waits cannot be used.
@@ -142,20 +153,13 @@ pub fn plan(
             Arrival { wait: it.number, after: *anchor, delay_s: came - from + delay_s };
         uses.push(Use {
             place: format!("{}:{}", it.record.file, it.record.line),
+            number: it.number,
             delay_s: *delay_s,
             median_s: median(it.record),
+            slack_s: lengths(it.record),
         });
     }
-    let all_longer: f64 = (0..cycles).map(|cycle| longer_by(&lists, &later, cycle)).sum();
-    Ok(Planned {
-        arrivals,
-        uses,
-        share: way.share,
-        cycles,
-        longer: longer_cycles(&lists, &later),
-        longer_s: all_longer / cycles.max(1) as f64,
-        notes,
-    })
+    Ok(Planned { arrivals, uses, share: way.share, cycles, notes })
 }
 
 /// The first wait of the cycle that a way has not, if it waits for a signal or condition.

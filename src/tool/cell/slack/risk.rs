@@ -57,18 +57,19 @@ pub(super) fn delays(slack: &[Vec<f64>], longer: usize) -> Vec<f64> {
     };
     // The same rank for all waits: a cycle that is early at one is often early at the others.
     let ranks = 0..=longer;
-    let chosen = ranks.rev().map(at).find(|delays| longer_cycles(slack, delays) <= longer);
+    let own: Vec<&[f64]> = slack.iter().map(Vec::as_slice).collect();
+    let chosen = ranks.rev().map(at).find(|delays| longer_cycles(&own, delays) <= longer);
     chosen.unwrap_or_else(|| vec![0.0; slack.len()])
 }
 
 /// The number of cycles that get longer if the robot comes later by `delays` (s).
-pub(super) fn longer_cycles(slack: &[Vec<f64>], delays: &[f64]) -> usize {
-    let cycles = slack.first().map_or(0, Vec::len);
+pub(super) fn longer_cycles(slack: &[&[f64]], delays: &[f64]) -> usize {
+    let cycles = slack.first().map_or(0, |of_wait| of_wait.len());
     (0..cycles).filter(|cycle| longer_by(slack, delays, *cycle) > SAME_S).count()
 }
 
 /// By how much a cycle gets longer, s.
-pub(super) fn longer_by(slack: &[Vec<f64>], delays: &[f64], cycle: usize) -> f64 {
+pub(super) fn longer_by(slack: &[&[f64]], delays: &[f64], cycle: usize) -> f64 {
     let waits = slack.iter().zip(delays);
     waits.map(|(slack, delay)| (delay - slack[cycle].max(0.0)).max(0.0)).sum()
 }
@@ -97,7 +98,8 @@ mod tests {
         // The same cycle is early at both: one longer cycle allows more at both.
         let one_longer = delays(&slack, 1);
         assert_eq!(one_longer, [2.01, 5.0]);
-        assert_eq!(longer_cycles(&slack, &one_longer), 1);
-        assert!((longer_by(&slack, &one_longer, 0) - 5.01).abs() < 1e-12);
+        let own: Vec<&[f64]> = slack.iter().map(Vec::as_slice).collect();
+        assert_eq!(longer_cycles(&own, &one_longer), 1);
+        assert!((longer_by(&own, &one_longer, 0) - 5.01).abs() < 1e-12);
     }
 }
