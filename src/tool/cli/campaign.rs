@@ -1,17 +1,18 @@
 //! `joulepath campaign`: the loop in the cell as a folder, from the first log to the proven saving.
 
+mod inputs;
 mod state;
 mod steps;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::{Context, bail};
+use anyhow::bail;
 use clap::Args;
 use serde_json::json;
 
 use super::common::{self, Format};
-use super::output;
+use super::{output, slack};
 use crate::tool::report::campaign as report;
 use crate::tool::report::html::campaign_report;
 use state::State;
@@ -24,7 +25,8 @@ use steps::{Next, Steps};
     after_help = "Example: joulepath campaign target/campaign --program fixtures/pick_place\n\n\
     The folder has only plain files. campaign.toml states the program and the options; recorded/, logs/before/, \
     waits.toml, optimized/, recorded-after/, logs/after/ and proof.json are the steps. A step whose result is there \
-    is not done again: delete a result to have it made anew."
+    is not done again, unless its inputs have changed (inputs.json) and the cell does not use it yet: delete a \
+    result to have it made anew."
 )]
 pub(super) struct CampaignArgs {
     /// The folder of the campaign.
@@ -56,35 +58,44 @@ pub(super) fn run(args: &CampaignArgs) -> anyhow::Result<ExitCode> {
         Some(program) => begin(args, program)?,
         None => State::read(&args.folder)?,
     };
-    let steps = Steps::new(&args.folder, &state);
+    let mut steps = Steps::new(&args.folder, &state)?;
     let next = loop {
         match steps.next()? {
             Next::Do(step) => {
                 common::note(args.quiet, &format!("{}: {}", step.name, step.shown()));
-                step.execute()?;
+                steps.execute(&step)?;
+                // A campaign whose first step fails has not begun.
+                state.write(&args.folder)?;
             }
             waiting => break waiting,
         }
     };
+    let proposals = steps.proposals()?;
     let done = steps.done();
-    let page = campaign_report(&state.program, &done, &next.text(), &steps.figures()?)?;
+    let page = campaign_report(&state.program, &done, next.text(), &proposals, &steps.figures()?)?;
     let path = args.folder.join(REPORT);
     output::write(&path, page.as_bytes())?;
     common::note(args.quiet, &format!("wrote {}", path.display()));
     common::print(
         args.format,
         || {
-            let finished = matches!(next, Next::Finished);
-            json!({ "program": state.program, "done": done, "next": next.text(), "finished": finished })
+            let finished = matches!(next, Next::Finished(_));
+            json!({
+                "program": state.program,
+                "done": done,
+                "next": next.text(),
+                "experiments": proposals,
+                "finished": finished,
+            })
         },
-        || report::text(&done, &next.text()),
+        || report::text(&done, next.text(), &proposals),
     )
 }
 
 /// The report of the campaign.
 const REPORT: &str = "report.html";
 
-/// Writes the state of a new campaign.
+/// The state of a new campaign.
 fn begin(args: &CampaignArgs, program: &std::path::Path) -> anyhow::Result<State> {
     if State::path(&args.folder).exists() {
         bail!(
@@ -104,13 +115,12 @@ fn begin(args: &CampaignArgs, program: &std::path::Path) -> anyhow::Result<State
             folder.display()
         );
     }
-    let state = State {
+    if let Some(risk) = &args.risk {
+        slack::share(risk)?;
+    }
+    Ok(State {
         program: program.display().to_string(),
         robot: args.robot.clone(),
         risk: args.risk.clone(),
-    };
-    std::fs::create_dir_all(&folder)
-        .with_context(|| format!("cannot make the folder '{}'", folder.display()))?;
-    state.write(&args.folder)?;
-    Ok(state)
+    })
 }

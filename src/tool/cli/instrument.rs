@@ -12,7 +12,8 @@ use super::program_output::{refuse_nested_output, whole_backup, write_folder};
 use super::{backinfo, listing};
 use crate::rapid::text::{FileId, SourceFile};
 use crate::tool::cell::instrument::{
-    Late, Request, Samples, instrument, is_recorder, recorder_prefix, without_recorder,
+    Late, Request, Samples, instrument, is_recorder, program_hash, recorded_program,
+    recorder_prefix, without_recorder,
 };
 use crate::tool::report::instrument as report;
 use crate::tool::retrofit::{OutputFile, OutputKind, Source};
@@ -104,6 +105,21 @@ fn remove(args: &InstrumentArgs) -> anyhow::Result<ExitCode> {
         refuse_nested_output(&args.out, paths)?;
     }
     let (files, outputs, modules) = originals(&input)?;
+    let recorders = input.files.iter().filter(|file| is_recorder(&file.source.bytes));
+    let recorded: Vec<String> =
+        recorders.filter_map(|file| recorded_program(&file.source.bytes)).collect();
+    let original = |(source, output): (&Source, &OutputFile)| Source {
+        file: SourceFile { bytes: output.bytes.clone(), ..source.file.clone() },
+        relative: source.relative.clone(),
+    };
+    let originals: Vec<Source> = files.iter().zip(&outputs).map(original).collect();
+    if !recorded.contains(&program_hash(&originals)) {
+        common::note(
+            quiet,
+            "the program has been changed since the recorder was put in: what is left is not the original, look \
+             through it",
+        );
+    }
     let written = write_folder(&args.out, (&files, &modules), &outputs, backup.as_deref())?;
     if args.program.format == Format::Text {
         common::notes(quiet, written.iter().map(|path| format!("wrote {path}")));

@@ -40,7 +40,7 @@ pub(super) fn use_waits(job: &mut Job, path: &Path, risk: &str) -> anyhow::Resul
 }
 
 /// A share such as `5%` or `0.05`.
-fn share(text: &str) -> anyhow::Result<f64> {
+pub(super) fn share(text: &str) -> anyhow::Result<f64> {
     let (number, unit) = match text.trim().strip_suffix('%') {
         Some(number) => (number, 0.01),
         None => (text.trim(), 1.0),

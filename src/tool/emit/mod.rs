@@ -23,7 +23,9 @@ pub use generated::{
 pub use guard::{EDIT_REMARKS, end_of_line};
 pub use layout::Layout;
 pub use names::{Names, has_streams, missing_streams, redeclared_name};
-pub use recorder::{RecordedSignal, RecordedSite, Recorder, Sampling, log_name, recorder};
+pub use recorder::{
+    MOST_NOTES, RecordedSignal, RecordedSite, Recorder, Sampling, log_name, recorder,
+};
 pub use site::{
     EmitError, Emitted, EmittedStream, MotionSettings, Now, Parameter, Pause, PutOff, Recorded,
     Robot, Site, Stop, Word,

@@ -7,8 +7,9 @@ use super::names::Names;
 use crate::rapid::ir::number::{TIME_DECIMALS, number};
 
 const TEMPLATE: &str = include_str!("../../../templates/recorder.mod.tera");
-/// Notes in memory: those of the program, and those of interrupts.
-const MOST: usize = 3_000;
+/// Notes of the program in memory.
+pub const MOST_NOTES: usize = 3_000;
+/// Notes of interrupts in memory.
 const MOST_INTERRUPTS: usize = 1_000;
 /// Samples in memory.
 const MOST_SAMPLES: usize = 3_000;
@@ -132,7 +133,7 @@ pub fn recorder(names: &Names, recorder: &Recorder<'_>) -> Result<String, tera::
     context.insert("largest", &LARGEST);
     context.insert("sites", &recorder.sites);
     context.insert("events", &EVENTS);
-    context.insert("most", &MOST);
+    context.insert("most", &MOST_NOTES);
     context.insert("most_interrupts", &MOST_INTERRUPTS);
     context.insert("block", &BLOCK);
     context.insert("signals", &signals);

@@ -16,13 +16,19 @@ pub struct Done {
     pub page: Option<String>,
 }
 
-/// The state as text.
-pub fn text(done: &[Done], next: &str) -> String {
+/// The state as text. `experiments`: commands that would tell more of the waits.
+pub fn text(done: &[Done], next: &str, experiments: &[String]) -> String {
     let mut out = String::new();
     for step in done {
         let _ = writeln!(out, "{} {}", if step.is_done { "done" } else { "    " }, step.name);
     }
     let _ = writeln!(out, "next: {next}");
+    if !experiments.is_empty() {
+        let _ = writeln!(out, "or first, to tell what more waits are (logs go beside the others):");
+    }
+    for command in experiments {
+        let _ = writeln!(out, "    {command}");
+    }
     out
 }
 
@@ -54,7 +60,7 @@ pub fn promised(result: &Value) -> Option<String> {
     Some(format!(
         "The retrofit promises {:.1} % of all energy, {:.1} % of the motion energy; {} of {} recorded cycles would have \
          become longer.",
-        result["saving_percent"].as_f64()?,
+        waits["expected_saving_percent"].as_f64()?,
         result["motion_saving_percent"].as_f64()?,
         waits["longer"].as_u64()?,
         waits["cycles"].as_u64()?
@@ -65,10 +71,9 @@ pub fn promised(result: &Value) -> Option<String> {
 pub fn proved(result: &Value) -> Option<String> {
     let saving = &result["saving_percent"];
     Some(format!(
-        "Measured: {:.1} % ({:.1} to {:.1}) saved; verdict: {}.",
+        "Measured: {:.1} % ({:.1} to {:.1}) saved.",
         saving["value"].as_f64()?,
         saving["low"].as_f64()?,
-        saving["high"].as_f64()?,
-        result["verdict"].as_str()?
+        saving["high"].as_f64()?
     ))
 }

@@ -74,6 +74,14 @@ pub fn text(made: &Instrumented) -> String {
              fewer signals with --signals"
         );
     }
+    if cost.notes > made.memory {
+        let _ = writeln!(
+            out,
+            "a cycle has {} notes and the memory holds {}: the end of each cycle will be lost. Let a routine \
+             of the program be main of its own, or record it with --entry",
+            cost.notes, made.memory
+        );
+    }
     if let Some(rows) = made.sample_rows {
         let _ = writeln!(
             out,

@@ -5,6 +5,7 @@ use std::fmt::Write;
 
 use serde_json::{Value, json};
 
+use super::diagnose::quoted;
 use super::table::{Align, table};
 use crate::tool::cell::events::Place;
 use crate::tool::cell::waits::{
@@ -54,7 +55,7 @@ fn wait_json(of: Waits<'_>, wait: &Wait) -> Value {
         json!({
             "late_s": experiment.late_s,
             "cycles": experiment.cycles,
-            "command": experiment.command(of.program),
+            "command": experiment.command(&quoted(of.program)),
         })
     });
     let populations = wait
@@ -194,7 +195,7 @@ pub fn text(of: Waits<'_>) -> String {
             wait.samples.key.place,
             experiment.cycles,
             experiment.late_s,
-            experiment.command(of.program)
+            experiment.command(&quoted(of.program))
         );
     }
     let slack = waits.iter().filter(|wait| wait.verdict.kind == WaitKind::Slack).count();

@@ -115,11 +115,8 @@ fn idle(
         if dwell.duration < SHORTEST_DWELL && !matches!(dwell.reason, Reason::UnknownDwell) {
             continue;
         }
-        let energy = |cycle: &Simulated| -> f64 {
-            let parts = dwell.events.iter().flat_map(|i| &cycle.account.events[*i]);
-            parts.map(EnergyParts::energy_j).sum()
-        };
-        let time: f64 = dwell.events.iter().map(|i| before.simulation.events[*i].duration).sum();
+        let [(time, energy), (time_after, energy_after)] =
+            [before, after].map(|cycle| cost(cycle, &dwell.events));
         let segment = by_place.entry(dwell.span).or_insert_with(|| {
             Segment::new(dwell.span, SegmentKind::Idle, Some(dwell.reason.clone()))
         });
@@ -131,9 +128,9 @@ fn idle(
             segment.points = rest.out.points().len() + rest.back.points().len();
         }
         segment.time_before_s += time;
-        segment.time_after_s += time;
-        segment.energy_before_j += energy(before);
-        segment.energy_after_j += energy(after);
+        segment.time_after_s += time_after;
+        segment.energy_before_j += energy;
+        segment.energy_after_j += energy_after;
         segment.potential_j += dwell.potential_j;
         segment.events.extend(&dwell.events);
     }

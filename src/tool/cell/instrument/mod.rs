@@ -17,4 +17,4 @@ pub use cost::Cost;
 pub use error::InstrumentError;
 pub use hash::program_hash;
 pub use recording::{Instrumented, Late, Request, Samples, instrument};
-pub use remove::{is_recorder, recorder_prefix, without_recorder};
+pub use remove::{is_recorder, recorded_program, recorder_prefix, without_recorder};

@@ -75,6 +75,8 @@ pub struct Instrumented {
     pub left_out: Vec<(String, &'static str)>,
     /// What it takes.
     pub cost: Cost,
+    /// Notes that its memory holds.
+    pub memory: usize,
     /// Rows of samples that a cycle writes.
     pub sample_rows: Option<usize>,
 }
@@ -168,6 +170,7 @@ pub fn instrument(
             .map(|(span, why)| (file_and_line(files, span), why))
             .collect(),
         cost: cost(&simulation, &recorded, recorder.signals.len(), samplings),
+        memory: emit::MOST_NOTES,
         sample_rows: samplings.map(|own| own.rows),
         program: hash,
     })
@@ -269,10 +272,13 @@ fn edits(files: &[SourceFile], sites: &[Site], p: &str, tools: bool) -> Vec<Edit
                 };
                 [Some(format!("{p}Move {number}{tool}")), done]
             }
-            SiteKind::Wait { flag, .. } => {
-                let flag =
-                    flag.as_ref().map_or_else(String::new, |flag| format!("\\Timeout:={flag}"));
-                [Some(format!("{p}Wait {number}")), Some(format!("{p}End {number}{flag}"))]
+            SiteKind::Wait { flag, most, .. } => {
+                let limit = match (flag, most) {
+                    (Some(flag), _) => format!("\\Timeout:={flag}"),
+                    (None, Some(most)) => format!("\\Most:={most}"),
+                    (None, None) => String::new(),
+                };
+                [Some(format!("{p}Wait {number}")), Some(format!("{p}End {number}{limit}"))]
             }
             SiteKind::Output { level, .. } => [None, Some(format!("{p}Out {number},{level}"))],
             SiteKind::Load(mass) => [None, Some(format!("{p}Load {number},{mass}"))],

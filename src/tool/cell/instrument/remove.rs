@@ -29,6 +29,13 @@ pub fn recorder_prefix(bytes: &[u8]) -> Option<String> {
     String::from_utf8(bytes[end - length..end].to_vec()).ok()
 }
 
+/// The hash of the program into which a recorder was put, from its module.
+pub fn recorded_program(bytes: &[u8]) -> Option<String> {
+    let rest = &bytes[memmem::find(bytes, FIRST)? + FIRST.len()..];
+    let end = memchr::memchr(b'"', rest)?;
+    String::from_utf8(rest[..end].to_vec()).ok()
+}
+
 /// The bytes of a file without the calls of the recorder with this prefix.
 pub fn without_recorder(file: &SourceFile, prefix: &str) -> Vec<u8> {
     let parse = syntax::parse(&file.bytes);

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::rapid::builtins::{self, Effect, Level, MoveForm, MoveSignature, Setting};
+use crate::rapid::builtins::{self, Effect, Level, MoveForm, MoveKind, MoveSignature, Setting};
 use crate::rapid::ir::exec::evaluate;
 use crate::rapid::ir::hir::{
     ArgKind, Call, Callee, Expr, ExprKind, Routine, RoutineKind, Stmt, StmtKind,
@@ -41,6 +41,8 @@ pub(super) enum SiteKind {
         signal: Option<String>,
         /// RAPID text of the flag that says that its time limit ended it.
         flag: Option<String>,
+        /// RAPID text of its time limit: an error handler may go on behind the wait.
+        most: Option<String>,
     },
     /// An output.
     Output {
@@ -84,21 +86,23 @@ pub(super) fn sites(
     let compact = program.in_compact_ifs();
     let finder = Finder { program, files, signals, is_run, compact };
     let mut found = Sites { sites: Vec::new(), left_out: Vec::new() };
+    let interrupting = called_by_traps(program);
     for (id, routine) in program.routines() {
-        let is_trap = matches!(routine.kind, RoutineKind::Trap);
-        let is_generated = finder.is_generated(routine.span);
-        if is_generated {
+        if finder.is_generated(routine.span) {
             continue;
         }
         for stmt in recorded_statements(routine) {
-            let Some(kind) = finder.kind(id.module, stmt) else { continue };
-            let counts = matches!(kind, SiteKind::Movement { .. } | SiteKind::Wait { .. });
-            if is_trap || finder.compact.contains(&stmt.span) {
-                let why = if is_trap { IN_TRAP } else { IN_COMPACT_IF };
-                found.left_out.extend(counts.then_some((stmt.span, why)));
-                continue;
+            if let Some(why) = finder.hides_outputs(id.module, stmt) {
+                found.left_out.push((stmt.span, why));
             }
-            found.sites.push(Site { span: stmt.span, kind });
+            let Some(kind) = finder.kind(id.module, stmt) else { continue };
+            if interrupting.contains(&id) {
+                found.left_out.push((stmt.span, IN_TRAP));
+            } else if finder.compact.contains(&stmt.span) {
+                found.left_out.push((stmt.span, IN_COMPACT_IF));
+            } else {
+                found.sites.push(Site { span: stmt.span, kind });
+            }
         }
     }
     let starts = cycle_starts(program, entry);
@@ -109,9 +113,39 @@ pub(super) fn sites(
     found
 }
 
-const IN_TRAP: &str = "it stands in a TRAP, which may interrupt the recorder";
+const IN_TRAP: &str =
+    "it stands in a TRAP, or in a procedure that one calls, which may interrupt the recorder";
+const ON_THE_PATH: &str =
+    "its output is set on the path, where no call can stand: --signals records it by an interrupt";
+const NO_NAME: &str =
+    "its output is a parameter or an alias: --signals records it by the name of the signal";
 const IN_COMPACT_IF: &str =
     "it is the statement of a compact IF, beside which nothing fits: write IF … THEN … ENDIF";
+
+/// The TRAPs, and the routines that they call.
+fn called_by_traps(program: &Program) -> BTreeSet<RoutineId> {
+    let is_trap = |routine: &Routine| matches!(routine.kind, RoutineKind::Trap);
+    let traps = program.routines().filter(|(_, routine)| is_trap(routine));
+    let mut open: Vec<RoutineId> = traps.map(|(id, _)| id).collect();
+    let mut found = BTreeSet::new();
+    while let Some(id) = open.pop() {
+        if found.insert(id) {
+            open.extend(
+                program.routine(id).statements().filter_map(|stmt| called(program, id, stmt)),
+            );
+        }
+    }
+    found
+}
+
+/// The routine of the program that a statement calls.
+fn called(program: &Program, from: RoutineId, stmt: &Stmt) -> Option<RoutineId> {
+    let StmtKind::Call(Call { callee: Callee::Name(name), .. }) = &stmt.kind else { return None };
+    match program.resolve(from.module, &name.key)? {
+        Symbol::Routine(id) => Some(id),
+        _ => None,
+    }
+}
 
 /// The statements of the body and of the error handlers.
 fn recorded_statements(routine: &Routine) -> impl Iterator<Item = &Stmt> {
@@ -129,24 +163,19 @@ fn cycle_starts(program: &Program, entry: RoutineId) -> Vec<Span> {
         if !seen.insert(id) {
             continue;
         }
-        let mut called = Vec::new();
+        let mut next = Vec::new();
         for stmt in statements(&program.routine(id).body) {
-            match &stmt.kind {
-                StmtKind::While { condition, body } if endless.is_none() => {
-                    let value = evaluate(program, id.module, condition);
-                    if value.datum == Datum::Bool(true) && value.origin.iter().next().is_none() {
-                        endless = body.first().map(|stmt| stmt.span);
-                    }
+            if let StmtKind::While { condition, body } = &stmt.kind
+                && endless.is_none()
+            {
+                let value = evaluate(program, id.module, condition);
+                if value.datum == Datum::Bool(true) && value.origin.iter().next().is_none() {
+                    endless = body.first().map(|stmt| stmt.span);
                 }
-                StmtKind::Call(Call { callee: Callee::Name(name), .. }) => {
-                    if let Some(Symbol::Routine(id)) = program.resolve(id.module, &name.key) {
-                        called.push(id);
-                    }
-                }
-                _ => {}
             }
+            next.extend(called(program, id, stmt));
         }
-        open.extend(called.into_iter().rev());
+        open.extend(next.into_iter().rev());
     }
     let mut starts: Vec<Span> = first.into_iter().chain(endless).collect();
     starts.dedup();
@@ -211,6 +240,23 @@ impl Finder<'_> {
         }
     }
 
+    /// Why the output of a statement is not recorded, if it has one that is not.
+    fn hides_outputs(&self, module: usize, stmt: &Stmt) -> Option<&'static str> {
+        let StmtKind::Call(call) = &stmt.kind else { return None };
+        let Callee::Name(name) = &call.callee else { return None };
+        if self.program.resolve(module, &name.key).is_some() {
+            return None;
+        }
+        let instruction = builtins::instruction(&name.key)?;
+        if instruction.movement().is_some_and(|it| it.kind == MoveKind::Event) {
+            return Some(ON_THE_PATH);
+        }
+        let first = call.args.iter().find_map(|arg| arg.positional());
+        let has_no_name = matches!(instruction.effect, Effect::Output(_))
+            && first.is_some_and(|signal| self.signal(signal).is_none());
+        has_no_name.then_some(NO_NAME)
+    }
+
     fn wait(&self, call: &Call) -> SiteKind {
         let signals: BTreeSet<String> = call
             .args
@@ -219,11 +265,15 @@ impl Finder<'_> {
             .flat_map(|expr| self.signals_in(expr))
             .collect();
         let signal = signals.first().filter(|_| signals.len() == 1).cloned();
-        let flag = call.args.iter().find_map(|arg| match &arg.kind {
-            ArgKind::Optional(name, Some(expr)) if name.key == "timeflag" => self.datum(expr),
-            _ => None,
-        });
-        SiteKind::Wait { signal, flag }
+        let named = |key: &str| {
+            call.args.iter().find_map(|arg| match &arg.kind {
+                ArgKind::Optional(name, Some(expr)) if name.key == key => Some(expr),
+                _ => None,
+            })
+        };
+        let flag = named("timeflag").and_then(|expr| self.datum(expr));
+        let most = named("maxtime").filter(|_| flag.is_none()).and_then(|expr| self.plain(expr));
+        SiteKind::Wait { signal, flag, most }
     }
 
     /// The signals that an expression names.
@@ -265,11 +315,16 @@ impl Finder<'_> {
 
     /// Whether a movement ends at a stop point.
     fn stop(&self, module: usize, signature: MoveSignature, call: &Call) -> Stop {
-        let has_stop_point = call
-            .args
-            .iter()
-            .any(|arg| matches!(&arg.kind, ArgKind::Optional(name, _) if name.key == "inpos"));
-        if !signature.zone || has_stop_point {
+        let has = |key: &str| {
+            call.args
+                .iter()
+                .any(|arg| matches!(&arg.kind, ArgKind::Optional(name, _) if name.key == key))
+        };
+        // The program goes on while the robot moves.
+        if has("conc") {
+            return Stop::Never;
+        }
+        if !signature.zone || has("inpos") {
             return Stop::Always;
         }
         let Some(zone) = zone(signature, call) else { return Stop::Never };

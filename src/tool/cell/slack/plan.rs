@@ -5,11 +5,14 @@ use super::risk::{allowed, delays, longer_by, longer_cycles, needed};
 use crate::retime::motion::arrivals::{Anchor, Arrival, anchored};
 use crate::retime::motion::timeline::{Event, What};
 use crate::retime::motion::{Options, Simulation};
+use crate::tool::cell::waits::AT_ONCE_S;
 use crate::tool::cell::waits::file::{KindEntry, RecordEntry, WaitEntry, WaitsFile, WayEntry};
 use crate::tool::retrofit::Source;
 
 /// Slack below this is left, s.
 const LEAST_S: f64 = 0.02;
+/// The share of the recorded comings that are earlier than what counts as seen: one visit is not enough.
+const SEEN: f64 = 0.95;
 
 /// What recorded waits allow.
 #[derive(Clone, Debug, PartialEq)]
@@ -140,7 +143,20 @@ pub fn plan(
             needed(risk)
         ));
     }
-    let later = longer.map_or_else(|| vec![0.0; lists.len()], |longer| delays(&lists, longer));
+    let mut later = longer.map_or_else(|| vec![0.0; lists.len()], |longer| delays(&lists, longer));
+    for ((index, _), delay_s) in slack.iter().zip(&mut later) {
+        let it = &known[*index];
+        let seen_s = latest_seen(it.record);
+        if it.entry.request && *delay_s > seen_s {
+            notes.push(format!(
+                "{}:{}: the robot sets an output where it waits, which the machine may answer: it comes no later than \
+                 it has been seen to wait ({seen_s:.2} s later; the log allows {delay_s:.2} s). joulepath instrument \
+                 --late shows more",
+                it.record.file, it.record.line
+            ));
+            *delay_s = seen_s;
+        }
+    }
     let mut uses = Vec::new();
     for ((index, anchor), delay_s) in slack.iter().zip(&later) {
         let it = &known[*index];
@@ -216,6 +232,14 @@ fn keep_independent(
 /// Time from the robot's coming to the signal, s, in each cycle.
 fn lengths(record: &RecordEntry) -> Vec<f64> {
     record.came_s.iter().zip(&record.signal_s).map(|(came, signal)| signal - came).collect()
+}
+
+/// How much later than usual the robot has come and still had to wait, s.
+fn latest_seen(record: &RecordEntry) -> f64 {
+    let pairs = record.came_s.iter().zip(&record.signal_s);
+    let waited: Vec<f64> =
+        pairs.filter(|(came, signal)| **signal - **came > AT_ONCE_S).map(|it| *it.0).collect();
+    (quantile(&waited, SEEN) - quantile(&record.came_s, 0.5)).max(0.0)
 }
 
 /// Time of an anchor, s from the start of the simulation.

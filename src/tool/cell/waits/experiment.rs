@@ -54,9 +54,10 @@ impl Experiment {
         Experiment { place: samples.key.place.clone(), late_s, cycles }
     }
 
-    /// The command that writes the program for it.
+    /// The command that writes the program for it: robot and folder are to be filled in.
     #[must_use]
     pub fn command(&self, program: &str) -> String {
-        format!("joulepath instrument {program} --out DIR --late {}={}", self.place, self.late_s)
+        let Experiment { place, late_s, .. } = self;
+        format!("joulepath instrument {program} --robot ROBOT --out DIR --late {place}={late_s}")
     }
 }

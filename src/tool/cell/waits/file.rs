@@ -51,6 +51,9 @@ pub struct WaitEntry {
     /// Quantiles of its length at 5, 25, 50, 75 and 95 %, s; none without visits.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub quantiles_s: Option<[f64; 5]>,
+    /// Whether the robot sets an output where it waits, which the machine may answer.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub request: bool,
     /// From where the machine's time counts: of slack alone.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub after: Option<After>,
@@ -139,7 +142,7 @@ pub struct RecordEntry {
 }
 
 /// An unusable `waits.toml`.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum WaitsFileError {
     /// Not the form of `waits.toml`.
     #[error("{message}; write the file anew with `joulepath waits`")]
@@ -179,6 +182,14 @@ pub enum WaitsFileError {
         place: String,
         /// The list.
         list: &'static str,
+    },
+    /// A share that is none.
+    #[error("{place}: share = {share}: give a number from 0 to 1")]
+    Share {
+        /// The way.
+        place: String,
+        /// The number.
+        share: f64,
     },
     /// A slack that counts from nowhere.
     #[error(
@@ -229,7 +240,11 @@ impl WaitsFile {
             }
         }
         for (number, way) in file.way.iter().enumerate() {
-            check_finite(&format!("way {}", number + 1), "cycle_s", &way.cycle_s)?;
+            let place = format!("way {}", number + 1);
+            check_finite(&place, "cycle_s", &way.cycle_s)?;
+            if !(0.0..=1.0).contains(&way.share) {
+                return Err(WaitsFileError::Share { place, share: way.share });
+            }
             for record in &way.record {
                 let place = format!("{}:{}", record.file, record.line);
                 let is_it = |wait: &WaitEntry| wait.file == record.file && wait.line == record.line;

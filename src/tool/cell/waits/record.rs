@@ -87,6 +87,7 @@ fn entry(wait: &Wait) -> WaitEntry {
         log_odds: (log_odds * 10.0).round() / 10.0 + 0.0,
         slope: wait.verdict.slope.map(|of| [of.value, of.low, of.high].map(rounded)),
         quantiles_s: is_known.then(|| wait.quantiles_s.map(rounded)),
+        request: wait.samples.has_request(),
         after: wait.after().map(after),
     }
 }

@@ -36,7 +36,7 @@ const MIN_CYCLES: usize = 12;
 /// Share of visits that find everything ready from which on there is nothing to learn.
 const ALWAYS: f64 = 0.95;
 /// What is there already in a larger share of the visits does not answer the robot.
-const ANSWERS: f64 = 0.5;
+const ANSWERS: f64 = 0.1;
 /// A wait for no signal that varies no more, s, lasts as long as the program says.
 const STATED_S: f64 = 0.02;
 

@@ -13,12 +13,14 @@ pub fn campaign_report(
     program: &str,
     done: &[Done],
     next: &str,
+    experiments: &[String],
     figures: &[String],
 ) -> Result<String, ReportError> {
     let mut context = Context::new();
     context.insert("program", program);
     context.insert("done", done);
     context.insert("next", next);
+    context.insert("experiments", experiments);
     context.insert("figures", figures);
     render(include_str!("../../../../templates/campaign.html.tera"), context)
 }

@@ -9,6 +9,7 @@ use super::format::{fixed, percent, seconds};
 use super::page::{ReportError, render};
 use crate::tool::cell::events::{Cycle, What};
 use crate::tool::cell::waits::{Shift, Wait, WaitKind};
+use crate::tool::report::diagnose::quoted;
 use crate::tool::report::svg::{Bar, Row, gantt, histogram};
 use crate::tool::report::waits::{Waits, remarks, signal_text, why};
 
@@ -96,7 +97,7 @@ fn row(of: Waits<'_>, wait: &Wait) -> WaitRow {
             [
                 experiment.cycles.to_string(),
                 format!("{}", experiment.late_s),
-                experiment.command(of.program),
+                experiment.command(&quoted(of.program)),
             ]
         }),
     }
