@@ -117,6 +117,53 @@ fn places_of_outputs_stay() {
     assert!(!has_height(&PROGRAM.replace(passed, stopped)));
 }
 
+/// Marks that cannot be used are named, and no order is offered for them.
+#[test]
+fn malformed_marks_of_a_free_order_are_named() {
+    let begin = "! joulepath: free order\n";
+    let end = "! JOULEPATH: END OF FREE ORDER\n";
+    let visits = "MoveJ pRound,v1000,z10,tGrip;\nMoveJ Offs(pB,0,0,nHigh),v1000,z10,tGrip;\n";
+    let marked = |with: String| {
+        let text = PROGRAM.replace(visits, &with);
+        assert!(text != PROGRAM);
+        let folder = folder();
+        fs::write(folder.path().join("in/m.mod"), text).unwrap();
+        let args = ["optimize", "in", "--suggest", "--point-estimate", "--robot", ROBOT];
+        let output = run_in(folder.path(), &args);
+        (
+            String::from_utf8_lossy(&output.stderr).into_owned(),
+            String::from_utf8_lossy(&output.stdout).into_owned(),
+        )
+    };
+    for (text, fault) in [
+        (format!("{begin}{visits}"), "no end"),
+        (format!("{visits}{end}"), "before this end"),
+        (format!("{begin}{begin}{visits}{end}"), "has not ended"),
+        (format!("{begin}{end}{visits}"), "no statement"),
+        (format!("{begin}reg1:=1;\n{visits}{end}"), "only have calls"),
+        (format!("{begin}IF TRUE THEN\n{visits}{end}ENDIF\n"), "different blocks"),
+    ] {
+        let (notes, list) = marked(text);
+        assert!(notes.contains(fault) && notes.contains("m.mod:"), "{fault}: {notes}");
+        assert!(!list.contains("order Move"), "{list}");
+    }
+}
+
+/// An order is no other one if its visits would go elsewhere, or switch outputs elsewhere.
+#[test]
+fn a_free_order_does_the_same_work() {
+    let text = |visits: &str| {
+        let head = PROGRAM.split("PROC main").next().unwrap();
+        format!(
+            "{head}VAR num n:=0;\nPROC Visit()\nMoveL Offs(pA,0,130*n,0),v300,fine,tGrip;\nSetDO doTest,1;\nENDPROC\n\
+             PROC Next(num by)\nn:=n+by;\nENDPROC\n\
+             PROC main()\nMoveAbsJ jHome,v1000,fine,tGrip;\n! joulepath: free order\n{visits}\
+             ! joulepath: end of free order\nMoveAbsJ jHome,v1000,fine,tGrip;\nENDPROC\nENDMODULE\n"
+        )
+    };
+    assert!(!suggests(&text("Visit;\nNext 4;\nVisit;\nNext -3;\nVisit;\n"), "order Visit; Visit;"));
+}
+
 /// What an order, an acceleration or a configuration costs is found out, and the edit mends it.
 #[test]
 fn settings_configurations_and_orders_are_suggested() {

@@ -9,7 +9,7 @@ use clap::Args;
 use super::common::{self, Format, ProgramArgs};
 use super::input::{self, Input};
 use super::program_output::{refuse_nested_output, whole_backup, write_folder};
-use super::{backinfo, listing};
+use super::{backinfo, listing, signals};
 use crate::rapid::text::{FileId, SourceFile};
 use crate::tool::cell::instrument::{
     Late, Request, Samples, instrument, is_recorder, program_hash, recorded_program,
@@ -71,6 +71,7 @@ pub(super) fn run(args: &InstrumentArgs) -> anyhow::Result<ExitCode> {
         late: args.late.as_deref().map(late).transpose()?,
     };
     let job = common::prepare(&args.program)?;
+    signals::check_job(&args.program.cell, &job)?;
     let quiet = args.program.cell.quiet;
     let paths = args.program.cell.paths.as_slice();
     let backup = whole_backup(paths, &job.input);

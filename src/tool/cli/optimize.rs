@@ -13,7 +13,7 @@ use super::keep_outs::keep_outs;
 use super::program_output::{
     diff, refuse_nested_output, whole_backup, write_folder, write_in_place,
 };
-use super::{backinfo, input, listing, output, slack, streams, suggest, undo};
+use super::{backinfo, input, listing, output, signals, slack, streams, suggest, undo};
 use crate::retime::optimize::cost::Cost;
 use crate::retime::optimize::freedom::{Bound, Freedom};
 use crate::retime::optimize::resting::IdleState;
@@ -228,6 +228,7 @@ pub(super) fn run(args: &OptimizeArgs) -> anyhow::Result<ExitCode> {
         return undo_in_place(args);
     }
     let mut job = common::prepare(&args.program)?;
+    signals::check_job(&args.program.cell, &job)?;
     let slack = args.waits.as_ref().map(|path| slack::use_waits(&mut job, path, &args.risk));
     let slack = slack.transpose()?;
     if args.suggest {

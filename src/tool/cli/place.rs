@@ -9,8 +9,8 @@ use clap::Args;
 
 use super::common::{self, Format, Job, ProgramArgs};
 use super::keep_outs::keep_outs;
-use super::output;
 use super::program_output::{refuse_nested_output, whole_backup, write_folder};
+use super::{output, signals};
 use crate::arm::robot::{Model, Use, ready};
 use crate::tool::place::{Bounds, Found, Goal, Placed, place};
 use crate::tool::report::html::place_report;
@@ -70,6 +70,7 @@ pub(super) fn run(args: &PlaceArgs) -> anyhow::Result<ExitCode> {
     let bounds: Vec<Bounds> =
         args.moves.iter().map(|text| Bounds::parse(text)).collect::<Result<_, _>>()?;
     let job = common::prepare(&args.program)?;
+    signals::check_job(&args.program.cell, &job)?;
     ready(&job.model, Use::Optimize)?;
     output::refuse_inputs(
         &[("--csv", args.csv.as_ref()), ("--report", args.report.as_ref())],
@@ -134,6 +135,13 @@ fn notes(job: &Job, found: &Found) -> Vec<String> {
              and tool"
                 .to_owned(),
         );
+    }
+    let clearance_m = found.today.room.clearance_m;
+    if clearance_m < 0.0 {
+        notes.push(format!(
+            "today's program may enter a keep-out by {:.0} mm: candidates are accepted that enter it by no more",
+            -1e3 * clearance_m
+        ));
     }
     if found.accepted.is_empty() {
         notes.push(

@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 
 use anyhow::bail;
 
-use super::common::CellArgs;
+use super::common::{CellArgs, Job};
 use crate::arm::robot::nearest;
 use crate::rapid::builtins::SignalKind;
 use crate::rapid::ir::program::Program;
 use crate::rapid::ir::signals::{Signal, signals};
 use crate::retime::motion::Simulation;
+use crate::tool::retrofit::read_program;
 
 /// Checks the signal names of `--assume` and `--input`, and the levels.
 pub(super) fn check(
@@ -48,6 +49,15 @@ pub(super) fn check(
         }
     }
     Ok(())
+}
+
+/// The same for a program that is not read yet.
+pub(super) fn check_job(args: &CellArgs, job: &Job) -> anyhow::Result<()> {
+    if args.levels.is_empty() && args.inputs.is_empty() {
+        return Ok(());
+    }
+    let (program, _) = read_program(&job.files, &job.entry)?;
+    check(args, &job.options.levels, &program)
 }
 
 /// The signal of an option `SIGNAL=VALUE`.

@@ -6,7 +6,7 @@ use anyhow::bail;
 use clap::Args;
 
 use super::common::{self, Format, ProgramArgs};
-use super::load;
+use super::{load, signals};
 use crate::arm::kinematics::limits_ok;
 use crate::arm::robot::{Model, Use, ready};
 use crate::retime::motion;
@@ -95,6 +95,7 @@ fn dwells_of_program(
     distance: f64,
 ) -> anyhow::Result<(Model, Vec<Pose>, Vec<String>)> {
     let job = common::prepare(&args.program)?;
+    signals::check_job(&args.program.cell, &job)?;
     ready(&job.model, Use::Standstill)?;
     let (program, entry) = read_program(&job.files, &job.entry)?;
     let simulation = motion::simulate(&program, entry, &job.model, &job.options);

@@ -23,6 +23,7 @@ pub(super) fn list(args: &ProgramArgs, job: &Job) -> anyhow::Result<ExitCode> {
         bail!("hours_per_year = {hours_per_year}: give hours above 0, at most {HOURS_OF_A_YEAR}");
     }
     let found = found(args, job)?;
+    common::notes(args.cell.quiet, &found.notes);
     let sources = job.sources();
     let of = Shown { found: &found, hours_per_year, files: &sources };
     common::note(

@@ -14,7 +14,7 @@ const TOOL_TOLERANCE: f64 = 1e-5;
 /// What two cycles of the same work have in common: each level has all that those above have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kept {
-    /// The waits and outputs, in any order.
+    /// The targets, and the waits and outputs at each of them, in any order.
     Work,
     /// Their order.
     Order,
@@ -33,13 +33,11 @@ pub fn same_process(model: &Model, before: &Simulation, after: &Simulation, kept
         Kept::Flange => is_same_place(model, a, b),
         _ => are_close(a, b, POSITION_TOLERANCE),
     };
-    let mut done = [before, after].map(|of| actions(&of.events));
-    if kept == Kept::Work {
-        for actions in &mut done {
-            actions.sort_unstable();
-        }
-    }
-    done[0] == done[1]
+    let is_same = match kept {
+        Kept::Work => work(&before.events) == work(&after.events),
+        _ => actions(&before.events) == actions(&after.events),
+    };
+    is_same
         && a.len() == b.len()
         && a.iter().zip(&b).all(near)
         && problems(&after.events) <= problems(&before.events)
@@ -52,8 +50,12 @@ fn is_same_place(model: &Model, a: &Joints, b: &Joints) -> bool {
 }
 
 fn actions(events: &[Event]) -> Vec<String> {
-    let trace = trace::of_events(events);
-    let actions = trace.iter().filter_map(|done| match &done.what {
+    trace::of_events(events).iter().filter_map(|done| action(&done.what)).collect()
+}
+
+/// A wait or an output as text.
+fn action(what: &Action<'_>) -> Option<String> {
+    match what {
         Action::Output(output) => Some(format!("{} {}", output.signal, output.value)),
         Action::Wait(wait, basis) => {
             let length = wait.duration.unwrap_or_default();
@@ -61,8 +63,22 @@ fn actions(events: &[Event]) -> Vec<String> {
         }
         Action::Left(_) => Some("elsewhere".to_owned()),
         Action::Move(_) => None,
-    });
-    actions.collect()
+    }
+}
+
+/// The targets, and the waits and outputs with the target before them, sorted.
+fn work(events: &[Event]) -> Vec<String> {
+    let mut target = String::new();
+    let mut all = Vec::new();
+    for done in trace::of_events(events) {
+        if let Action::Move(movement) = &done.what {
+            target = format!("{:?}", movement.target);
+            all.push(target.clone());
+        }
+        all.extend(action(&done.what).map(|action| format!("{action} at {target}")));
+    }
+    all.sort_unstable();
+    all
 }
 
 fn places(events: &[Event], kept: Kept) -> Vec<Joints> {

@@ -24,14 +24,16 @@ pub fn freed(file: &SourceFile) -> Vec<Span> {
         .collect()
 }
 
-/// The lines with a comment of this text, without `!` and white space.
+/// The lines with a comment of this text in lower case, without `!` and white space.
 pub(in crate::tool) fn comments(file: &SourceFile, text: &[u8]) -> Vec<u32> {
-    if memchr::memmem::find(&file.bytes, text).is_none() {
+    if memchr::memmem::find(&file.bytes.to_ascii_lowercase(), text).is_none() {
         return Vec::new();
     }
     let parse = syntax::parse(&file.bytes);
     let tokens = parse.tree.root().all_tokens();
-    let is_it = |comment: &[u8]| comment.get(1..).unwrap_or_default().trim_ascii() == text;
+    let is_it = |comment: &[u8]| {
+        comment.get(1..).unwrap_or_default().trim_ascii().eq_ignore_ascii_case(text)
+    };
     tokens
         .filter(|token| token.kind() == TokenKind::Comment && is_it(token.text(&file.bytes)))
         .map(|token| file.position(token.range().start).line)

@@ -55,10 +55,11 @@ pub fn read_program(files: &[Source], entry: &str) -> Result<(Program, RoutineId
     }
 }
 
-/// Whether the error is inside another routine of the module, so that the entry is usable.
+/// Whether the error is inside another routine of the module, so that the entry is usable: at the first
+/// word of a routine it belongs to what stands before.
 fn is_elsewhere(program: &Program, entry: RoutineId, error: &SyntaxError) -> bool {
     program.modules[entry.module].routines.iter().enumerate().any(|(index, routine)| {
-        index != entry.index && routine.span.start <= error.start && error.end <= routine.span.end
+        index != entry.index && routine.span.start < error.start && error.end <= routine.span.end
     })
 }
 

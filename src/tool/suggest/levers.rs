@@ -5,8 +5,8 @@ use crate::tool::lint::context::Context;
 use crate::tool::lint::process::Kept;
 use crate::tool::lint::rule::Finding;
 
-/// All levers of a program.
-pub(super) fn levers(context: &Context<'_>, findings: &[Finding]) -> Vec<Lever> {
+/// All levers of a program, and what is wrong with its marks.
+pub(super) fn levers(context: &Context<'_>, findings: &[Finding]) -> (Vec<Lever>, Vec<String>) {
     let mut all = of_findings(findings);
     all.extend(super::zones::levers(context));
     all.extend(super::lines::levers(context));
@@ -15,8 +15,9 @@ pub(super) fn levers(context: &Context<'_>, findings: &[Finding]) -> Vec<Lever> 
     all.extend(super::points::levers(context));
     all.extend(super::configurations::levers(context));
     all.extend(super::accelerations::levers(context));
-    all.extend(super::orders::levers(context));
-    all
+    let (orders, faults) = super::orders::levers(context);
+    all.extend(orders);
+    (all, faults)
 }
 
 /// The fixes of lints.

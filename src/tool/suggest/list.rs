@@ -52,6 +52,8 @@ pub struct Suggestions {
     pub energy: EnergyParts,
     /// Duration of the cycle, s.
     pub cycle_s: f64,
+    /// What is wrong with marks of the user.
+    pub notes: Vec<String>,
     simulation: Simulation,
 }
 
@@ -93,7 +95,7 @@ pub fn suggestions(
     let Simulated { simulation, account } = cell.simulated()?;
     let cycle = Cycle::new(cell.model, simulation, account, cell.options.clone());
     let context = Context::new(&files, Some(cell.model), &program, &group, Some(&cycle), None);
-    let levers = levers(&context, &found.findings);
+    let (levers, notes) = levers(&context, &found.findings);
     let swept = Swept::new(cell.model, &cycle.simulation);
     let robots = if point_estimate { None } else { Robots::new(cell.model) };
     let energies = |simulation: &Simulation, total: EnergyParts| {
@@ -129,6 +131,7 @@ pub fn suggestions(
         all,
         energy: cycle.account.total,
         cycle_s: cycle.simulation.cycle_s,
+        notes,
         simulation: cycle.simulation,
     })
 }
@@ -186,5 +189,5 @@ fn best_offer(cell: Cell<'_>, before: &Cycle, lever: &Lever) -> Option<Tried> {
         Offers::Shift(shift) => shifted(shift, before.account.total.energy_j(), &after),
         Offers::Order(visits) => ordered(visits, before.account.total.energy_j(), &after),
     };
-    best.filter(|(_, after)| energy(after) <= least)
+    best.filter(|(_, after)| energy(after) < least)
 }
