@@ -117,7 +117,10 @@ fn where_the_log_does_not_tell_an_experiment_is_proposed() {
     for wait in found["waits"].as_array().unwrap() {
         assert_eq!(wait["kind"], "unknown", "{found:#}");
         let command = wait["experiment"]["command"].as_str().unwrap();
-        assert!(command.contains("instrument PROGRAM --out DIR --late Cell.mod:"), "{command}");
+        assert!(
+            command.contains("instrument PROGRAM --robot ROBOT --out DIR --late Cell.mod:"),
+            "{command}"
+        );
     }
     let text = stdout(&run(&["waits", &shift, "--out", &out, "--quiet"]));
     assert!(text.contains("to tell what Cell.mod:16 is, record"), "{text}");
