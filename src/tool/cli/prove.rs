@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::{Context, bail};
+use anyhow::{Context, anyhow, bail};
 use clap::Args;
 
 use super::common::{self, Format};
@@ -67,6 +67,9 @@ pub(super) fn run(args: &ProveArgs) -> anyhow::Result<ExitCode> {
         bail!("--effect {}: give a saving between 0 and 90 %, such as 3%", args.effect);
     }
     let promised = args.promised.as_deref().map(|text| percent("--promised", text)).transpose()?;
+    if promised.is_some_and(|share| share.abs() >= 1.0) {
+        bail!("--promised: give a saving between -100 and 100 %, such as 7.5%");
+    }
     let settings = Settings { effect, promised };
     let map = ColumnMap::parse(&args.map)?.with_products();
     let paths = || args.before.iter().chain(&args.after);
@@ -137,7 +140,8 @@ fn side(paths: &[PathBuf], map: &ColumnMap, quiet: bool) -> anyhow::Result<Side>
             side.events.push(EventLog { shown: shown.clone(), recording });
             found
         } else {
-            let log = read(&bytes, map).with_context(|| format!("{shown}: line 1"))?;
+            let log = read(&bytes, map)
+                .map_err(|error| anyhow!("{shown}: line 1: {}", printable(&error.to_string())))?;
             let rejected = log.rejected.iter().take(MAX_LISTED_ROWS);
             let lines = rejected.map(|of| format!("line {} is left out: {}", of.row, of.reason));
             let found = (log.rejected.len(), lines.collect());
@@ -145,13 +149,20 @@ fn side(paths: &[PathBuf], map: &ColumnMap, quiet: bool) -> anyhow::Result<Side>
             side.logs.push(PowerLog { shown: shown.clone(), log, scan, stamp });
             found
         };
-        common::notes(quiet, lines.iter().map(|line| format!("{shown}: {line}")));
+        common::notes(quiet, lines.iter().map(|line| format!("{shown}: {}", printable(line))));
         if rejected > MAX_LISTED_ROWS {
             let more = rejected - MAX_LISTED_ROWS;
             common::note(quiet, &format!("{shown}: {more} more rows are left out"));
         }
     }
     Ok(side)
+}
+
+/// A text that quotes a file, which may be binary: without what a terminal would obey or could not show.
+fn printable(text: &str) -> String {
+    let is_plain = |c: char| !c.is_control() && c != char::REPLACEMENT_CHARACTER;
+    let shown = |c: char| if is_plain(c) { c.to_string() } else { c.escape_default().to_string() };
+    text.chars().map(shown).collect()
 }
 
 fn bytes(path: &Path) -> anyhow::Result<Vec<u8>> {

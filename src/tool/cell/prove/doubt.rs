@@ -3,7 +3,8 @@
 
 use super::blocks::{block_length, long_run_variance};
 use super::estimate::Estimate;
-use super::periodic::correlation;
+use super::periodic::{correlation, deviation};
+use super::rest::{Level, is_gain};
 
 /// A reason to widen the interval.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,10 +26,12 @@ const STEP: f64 = 4.0;
 const DRIFT: f64 = 2.5;
 /// Least change of the power at rest, share: waiting at another pose changes it by as much.
 const LEAST: f64 = 0.003;
-/// Correlation of the mean courses of both sides below which they are of different work, and of the
-/// halves of a side from which on a course says something.
-const OTHER: f64 = 0.5;
+/// A part of the course of the power, and how far a retrofit moves it, as shares of the cycle.
+const PART: usize = 4;
+/// How well the halves of a side have to resemble each other for a course to say something, and the share of
+/// that below which the sides are of different work.
 const STEADY: f64 = 0.85;
+const OTHER: f64 = 0.75;
 /// Change of the duration that no retrofit makes without being asked, share.
 const LONGER: f64 = 0.15;
 
@@ -50,15 +53,18 @@ fn mean_and_error(x: &[f64]) -> [f64; 2] {
     [mean, (long_run_variance(&left, block_length(&left)) / n).sqrt()]
 }
 
-/// The power at rest of the cycles of both sides, W: a meter with another gain shows another one.
-pub(super) fn meter(rest: [&[f64]; 2], saving: f64) -> Option<Doubt> {
+/// The power at rest of the cycles of both sides, W: a meter with another gain shows another one, and another
+/// floor of the power.
+pub(super) fn meter(rest: [&[f64]; 2], levels: [Option<Level>; 2], saving: f64) -> Option<Doubt> {
+    let [Some(level_0), Some(level_1)] = levels else { return None };
     if rest.iter().any(|x| x.len() < 3) {
         return None;
     }
     let [[before, error_0], [after, error_1]] = rest.map(mean_and_error);
     let change = after / before - 1.0;
     let error = error_0.hypot(error_1) / before;
-    if change.abs() < LEAST || change.abs() < SEEN * error {
+    let is_seen = change.abs() >= LEAST && change.abs() >= SEEN * error;
+    if !is_seen || !is_gain(after / before, [level_0, level_1]) {
         return None;
     }
     // The true change of the energy lies between the measured one and that of a meter with this error.
@@ -158,6 +164,28 @@ pub(super) fn step(y: &[f64], side: usize, saving: f64) -> Option<Doubt> {
     })
 }
 
+/// How well the movements of two courses are found again in each other, in the same order: the mean, over parts
+/// of both weighted by their variance, of the best correlation with a part of the other one nearby. A retrofit
+/// shifts movements and changes a few of them; it leaves the others as they are.
+fn alike(a: &[f64], b: &[f64]) -> f64 {
+    let length = a.len() / PART;
+    let parts = |of: &[f64]| -> Vec<Vec<f64>> {
+        (0..of.len()).map(|at| of.iter().cycle().skip(at).take(length).copied().collect()).collect()
+    };
+    let (mut sum, mut weight) = (0.0, 0.0);
+    let both = [parts(a), parts(b)];
+    for [of, other] in [[&both[0], &both[1]], [&both[1], &both[0]]] {
+        for (at, part) in of.iter().enumerate() {
+            let near = (at + of.len() - length..=at + of.len() + length).map(|to| to % of.len());
+            let best = near.map(|to| correlation(part, &other[to])).fold(-1.0, f64::max);
+            let variance = deviation(part).powi(2);
+            sum += variance * best;
+            weight += variance;
+        }
+    }
+    if weight > 0.0 { sum / weight } else { 0.0 }
+}
+
 /// Where cycles begin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Turned {
@@ -180,21 +208,23 @@ pub(super) fn other_work(
         let sum = |point: usize| courses.iter().map(|course| course[point]).sum::<f64>();
         (0..points).map(|point| sum(point) / courses.len().max(1) as f64).collect()
     };
-    let steady = courses.iter().all(|courses| {
+    let within = courses.map(|courses| {
         let (a, b) = courses.split_at(courses.len() / 2);
-        !a.is_empty() && correlation(&mean(a), &mean(b)) > STEADY
+        if a.is_empty() { 0.0 } else { alike(&mean(a), &mean(b)) }
     });
+    let within = within[0].min(within[1]);
     let [before, mut after] = courses.map(mean);
-    let turns = if turned == Turned::Anyhow { after.len() } else { 1 };
-    let mut alike = f64::NEG_INFINITY;
-    for _ in 0..turns {
-        alike = alike.max(correlation(&before, &after));
-        after.rotate_left(1);
+    if turned == Turned::Anyhow {
+        let turn = |by: &usize| correlation(&before, &[&after[*by..], &after[..*by]].concat());
+        let best = (0..after.len()).max_by(|a, b| turn(a).total_cmp(&turn(b)));
+        after.rotate_left(best.unwrap_or(0));
     }
-    let text = if steady && alike < OTHER {
+    let across = alike(&before, &after);
+    let text = if within > STEADY && across < OTHER * within {
         format!(
-            "the course of the power over a cycle is another one (correlation {alike:.2}): another product or \
-             program? No verdict: give logs of the same work, with columns part or payload"
+            "the course of the power over a cycle is another one (the sides correlate by {across:.2}, cycles of \
+             one side by {within:.2}): another product or program? No verdict: give logs of the same work, with \
+             columns part or payload"
         )
     } else if longer.abs() > LONGER {
         format!(

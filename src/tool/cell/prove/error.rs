@@ -172,4 +172,12 @@ pub enum ProveError {
         /// W.
         power_w: f64,
     },
+    /// The meter is stuck.
+    #[error(
+        "{file}: line 1: the power never changes, as it does where a robot moves: check the meter and its column"
+    )]
+    Constant {
+        /// The log.
+        file: String,
+    },
 }

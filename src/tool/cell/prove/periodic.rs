@@ -4,19 +4,28 @@
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
+use super::outliers::median;
 use super::series::Series;
 
 /// Most points of the search.
 const GRID: f64 = 60_000.0;
 /// Least correlation of the power with itself one cycle later.
 const REPEATS: f64 = 0.3;
-/// The shortest lag counts whose correlation is nearly the largest: longer ones are multiples.
+/// Lags whose correlation is nearly the largest come first, the shortest of them before its multiples; then as
+/// many others.
 const NEARLY: f64 = 0.85;
+const CANDIDATES: usize = 40;
 /// Shortest period, in points.
 const SHORTEST: usize = 20;
 /// Part of the cycle that is found again, and its least correlation.
 const PART: usize = 5;
 const SAME: f64 = 0.75;
+/// Cycles resemble each other if this share of the time is in cycles whose duration is this near to the median
+/// and whose course at these points is the same. A longer cycle counts as this many of them.
+const ALIKE: f64 = 0.8;
+const DURATION: f64 = 0.3;
+const POINTS: usize = 16;
+const STOP: f64 = 3.0;
 /// Least distance of two starts, as a share of the period.
 const APART: f64 = 0.6;
 
@@ -30,24 +39,58 @@ pub(super) fn starts(series: &Series) -> Vec<f64> {
     let count = ((last - first) / step) as usize;
     let at = |i: usize| first + step * i as f64;
     let x: Vec<f64> = (0..count).map(|i| series.mean(at(i), at(i + 1))).collect();
-    let Some(period) = period(&x) else { return Vec::new() };
+    let found = periods(&x).into_iter().map(|period| cycles(&x, period));
+    let found = found.filter(|found| is_one_work(&x, found)).next().unwrap_or_default();
+    found.into_iter().map(|(place, shift)| at(place) + step * shift).collect()
+}
+
+/// Cycles of about this period: where the most distinctive part of one is found again.
+fn cycles(x: &[f64], period: usize) -> Vec<(usize, f64)> {
     let length = (period / PART).max(4);
-    let Some(from) = distinctive(&x, period, length) else { return Vec::new() };
+    let Some(from) = distinctive(x, period, length) else { return Vec::new() };
     let mut template = x[from..from + length].to_vec();
-    let mut found = matches(&x, &template, period);
+    let mut found = matches(x, &template, period);
     // The mean of what was found is a better sample than the first one.
     for k in 0..length {
         let sum: f64 = found.iter().map(|at| x[at.0 + k]).sum();
         template[k] = sum / found.len().max(1) as f64;
     }
     if found.len() > 1 {
-        found = matches(&x, &template, period);
+        found = matches(x, &template, period);
     }
-    found.into_iter().map(|(place, shift)| at(place) + step * shift).collect()
+    found
 }
 
-/// The period in points.
-fn period(x: &[f64]) -> Option<usize> {
+/// Whether cycles resemble each other, in duration and course: a movement that a cycle repeats does not, since
+/// the rest of the cycle comes between. Counted by time, in which a stop is no more than a few cycles.
+fn is_one_work(x: &[f64], found: &[(usize, f64)]) -> bool {
+    let spans: Vec<&[f64]> = found.windows(2).map(|pair| &x[pair[0].0..pair[1].0]).collect();
+    let lengths: Vec<f64> = spans.iter().map(|span| span.len() as f64).collect();
+    let usual = median(&lengths);
+    let courses: Vec<Vec<f64>> = spans.iter().map(|span| course(span)).collect();
+    let middle: Vec<f64> = (0..POINTS)
+        .map(|point| median(&courses.iter().map(|course| course[point]).collect::<Vec<f64>>()))
+        .collect();
+    let (mut alike, mut all) = (0.0, 0.0);
+    for (length, course) in lengths.iter().zip(&courses) {
+        let time = length.min(STOP * usual);
+        all += time;
+        if (length - usual).abs() <= DURATION * usual && correlation(course, &middle) >= SAME {
+            alike += time;
+        }
+    }
+    alike > 0.0 && alike >= ALIKE * all
+}
+
+/// The course of a cycle at equal distances.
+fn course(span: &[f64]) -> Vec<f64> {
+    let mean = |x: &[f64]| x.iter().sum::<f64>() / x.len() as f64;
+    let at = |point: usize| point * span.len() / POINTS;
+    (0..POINTS).map(|point| mean(&span[at(point)..at(point + 1).max(at(point) + 1)])).collect()
+}
+
+/// Periods in points, the likeliest first.
+fn periods(x: &[f64]) -> Vec<usize> {
     let n = x.len();
     let mean = x.iter().sum::<f64>() / n.max(1) as f64;
     let size = (2 * n).next_power_of_two();
@@ -61,14 +104,18 @@ fn period(x: &[f64]) -> Option<usize> {
         *value = Complex::new(value.norm_sqr(), 0.0);
     }
     planner.plan_fft_inverse(size).process(&mut values);
-    let zero = values.first().filter(|value| value.re > 0.0)?.re / n as f64;
+    let zero = values.first().map_or(0.0, |value| value.re) / n.max(1) as f64;
     let r = |lag: usize| values[lag].re / ((n - lag) as f64 * zero);
-    let below = (1..n / 2).find(|lag| r(*lag) < 0.0)?.max(SHORTEST);
-    let peaks = (below.max(1)..(n / 2).saturating_sub(1))
-        .filter(|lag| r(*lag) >= r(lag - 1) && r(*lag) > r(lag + 1) && r(*lag) > REPEATS);
-    let peaks: Vec<usize> = peaks.collect();
-    let most = peaks.iter().map(|lag| r(*lag)).fold(0.0, f64::max);
-    peaks.into_iter().find(|lag| r(*lag) >= NEARLY * most)
+    let below = (1..n / 2).find(|lag| r(*lag) < 0.0);
+    let Some(below) = below.filter(|_| zero > 0.0) else { return Vec::new() };
+    let mut peaks: Vec<usize> = (below.max(SHORTEST)..(n / 2).saturating_sub(1))
+        .filter(|lag| r(*lag) >= r(lag - 1) && r(*lag) > r(lag + 1) && r(*lag) > REPEATS)
+        .collect();
+    peaks.sort_by(|a, b| r(*b).total_cmp(&r(*a)));
+    let most = peaks.first().map_or(0.0, |lag| r(*lag));
+    peaks.truncate(CANDIDATES);
+    peaks.sort_by_key(|lag| (r(*lag) < NEARLY * most, *lag));
+    peaks
 }
 
 /// Start of the part of the second period that varies most and is least like the rest.
@@ -113,7 +160,8 @@ fn matches(x: &[f64], template: &[f64], period: usize) -> Vec<(usize, f64)> {
     found
 }
 
-fn deviation(x: &[f64]) -> f64 {
+/// Root of the sum of squares about the mean.
+pub(super) fn deviation(x: &[f64]) -> f64 {
     let mean = x.iter().sum::<f64>() / x.len() as f64;
     x.iter().map(|x| (x - mean).powi(2)).sum::<f64>().sqrt()
 }

@@ -5,22 +5,30 @@ use super::series::Series;
 
 /// Length of a window, s, and its least number of rows.
 const WINDOW_S: f64 = 0.4;
-const ROWS: f64 = 4.0;
+const ROWS: usize = 4;
 /// A window is quiet if it varies at most this much more than the quietest ones do.
 const QUIET: f64 = 2.0;
 const QUIETEST: f64 = 0.15;
+/// What windows at rest are allowed, in their usual deviations.
+const NOISE: f64 = 3.0;
 /// Half width of the level, as a share.
 pub(super) const BAND: f64 = 0.05;
 /// Least share of all windows that are at the level.
 const SEEN: f64 = 0.03;
-/// Least number of windows at the level.
+/// Least time at the level, in windows.
 const WINDOWS: usize = 5;
+/// The floor of the power is this quantile of the quiet windows. A meter with another gain changes it as much
+/// as the power at rest; this share of that at least, because both are noisy.
+const FLOOR: f64 = 0.05;
+const CONFIRMED: f64 = 0.5;
 
-/// A window of a log.
+/// The power of a window; one begins at each row.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Window {
-    pub(super) begin: f64,
-    pub(super) end: f64,
+    /// First row.
+    row: usize,
+    /// Number of rows.
+    rows: usize,
     /// W.
     mean: f64,
     /// W.
@@ -29,23 +37,16 @@ pub(super) struct Window {
 
 /// The windows of a log.
 pub(super) fn windows(series: &Series) -> Vec<Window> {
-    let length = WINDOW_S.max(ROWS * series.step);
     let (t, power) = (&series.t, &series.power);
-    let mut windows = Vec::new();
-    let mut row = 0;
-    while row < t.len() {
-        let end = row + t[row..].partition_point(|at| *at < t[row] + length);
-        let part = &power[row..end];
-        let n = part.len() as f64;
-        if n >= ROWS && t[end - 1] - t[row] > 0.5 * length {
-            let mean = part.iter().sum::<f64>() / n;
-            let squares: f64 = part.iter().map(|x| (x - mean).powi(2)).sum();
-            let last = t.get(end).copied().unwrap_or(t[end - 1]).min(t[row] + length);
-            windows.push(Window { begin: t[row], end: last, mean, sd: (squares / n).sqrt() });
-        }
-        row = end.max(row + 1);
-    }
-    windows
+    let rows = ((WINDOW_S / series.step).round() as usize).max(ROWS);
+    let longest = 1.5 * rows as f64 * series.step;
+    let part = |(row, part): (usize, &[f64])| {
+        let mean = part.iter().sum::<f64>() / rows as f64;
+        let squares: f64 = part.iter().map(|x| (x - mean).powi(2)).sum();
+        Window { row, rows, mean, sd: (squares / rows as f64).sqrt() }
+    };
+    let whole = |window: &Window| t[window.row + rows - 1] - t[window.row] < longest;
+    power.windows(rows).enumerate().map(part).filter(whole).collect()
 }
 
 /// A level with the windows that belong to it.
@@ -55,53 +56,95 @@ pub(super) struct Level {
     pub(super) power_w: f64,
     /// Largest deviation within a window, W.
     sd: f64,
+    /// Largest distance of a window's mean, W.
+    band: f64,
+    /// Lowest power that lasts on this side, W.
+    pub(super) floor_w: f64,
 }
 
 impl Level {
     /// The level at rest; `None` if the robot never rests, or not to be seen.
     pub(super) fn of(windows: &[Window]) -> Option<Level> {
-        let mean = windows.iter().map(|w| w.mean).sum::<f64>() / windows.len().max(1) as f64;
+        let rows = windows.first()?.rows;
+        let mean = windows.iter().map(|w| w.mean).sum::<f64>() / windows.len() as f64;
         let mut deviations: Vec<f64> = windows.iter().map(|w| w.sd).collect();
-        deviations.sort_by(f64::total_cmp);
-        let place = (QUIETEST * deviations.len() as f64) as usize;
-        let least = *deviations.get(place)?;
-        let sd = QUIET * least + 1e-3 * mean.abs();
+        let least = quantile(&mut deviations, QUIETEST)?;
+        let quiet = QUIET * least + 1e-3 * mean.abs();
         // Motion at constant speed is quiet, too, but takes more than the mean.
-        let quiet = windows.iter().filter(|w| w.sd <= sd && w.mean < mean && w.mean > 0.0);
-        let mut means: Vec<f64> = quiet.map(|w| w.mean).collect();
-        means.sort_by(f64::total_cmp);
-        let power_w = mode(&means)?;
-        let level = Level { power_w, sd };
+        let is_quiet = |w: &&Window| w.sd <= quiet && w.mean < mean && w.mean > 0.0;
+        let mut means: Vec<f64> = windows.iter().filter(is_quiet).map(|w| w.mean).collect();
+        let floor_w = quantile(&mut means, FLOOR)?;
+        let mode = mode(&means)?;
+        means.retain(|mean| (mean - mode).abs() <= BAND * mode);
+        let power_w = quantile(&mut means, 0.5)?;
+        // How much windows vary at rest: the quietest of all depend on how long the robot rests.
+        let at_rest = |w: &&Window| is_quiet(w) && (w.mean - power_w).abs() <= BAND * power_w;
+        let mut deviations: Vec<f64> = windows.iter().filter(at_rest).map(|w| w.sd).collect();
+        let noise = NOISE * quantile(&mut deviations, 0.5)?;
+        let band = BAND * power_w + noise / (rows as f64).sqrt();
+        let level = Level { power_w, sd: noise + 1e-3 * mean.abs(), band, floor_w };
         let count = windows.iter().filter(|w| level.has(w)).count();
-        (count >= WINDOWS && count as f64 >= SEEN * windows.len() as f64).then_some(level)
+        (count >= WINDOWS * rows && count as f64 >= SEEN * windows.len() as f64).then_some(level)
     }
 
-    /// One level for both sides if they have the same one nearly.
+    /// The levels by which time at rest is counted: one for both sides if theirs are nearly the same, each its
+    /// own if the floor of the power says that the meter has changed, else the lower one for both: what the
+    /// other side has is slow motion.
     pub(super) fn common(levels: [Level; 2]) -> [Level; 2] {
         let [a, b] = levels;
-        let power_w = 0.5 * (a.power_w + b.power_w);
-        if (a.power_w - b.power_w).abs() > 0.5 * BAND * power_w {
+        if (a.power_w - b.power_w).abs() <= 0.25 * BAND * (a.power_w + b.power_w) {
+            let power_w = 0.5 * (a.power_w + b.power_w);
+            let (sd, band) = (a.sd.max(b.sd), a.band.max(b.band));
+            return levels.map(|own| Level { power_w, sd, band, ..own });
+        }
+        if is_gain(b.power_w / a.power_w, levels) {
             return levels;
         }
-        [Level { power_w, sd: a.sd.max(b.sd) }; 2]
+        let lower = if a.power_w < b.power_w { a } else { b };
+        levels.map(|own| Level { floor_w: own.floor_w, ..lower })
     }
 
     /// Whether the robot rests in a window.
-    pub(super) fn has(&self, window: &Window) -> bool {
-        window.sd <= self.sd && (window.mean - self.power_w).abs() <= BAND * self.power_w
+    fn has(&self, window: &Window) -> bool {
+        window.sd <= self.sd && (window.mean - self.power_w).abs() <= self.band
     }
 
-    /// Time at rest between two times \[s\], and the mean power there \[W\].
-    pub(super) fn within(&self, windows: &[Window], from: f64, to: f64) -> (f64, Option<f64>) {
-        let begin = windows.partition_point(|w| w.begin < from);
-        let inside = windows[begin..].iter().take_while(|w| w.end <= to).filter(|w| self.has(w));
+    /// Time at rest between two times \[s\], and the mean power there \[W\]: all rows of windows at rest.
+    pub(super) fn within(
+        &self,
+        series: &Series,
+        windows: &[Window],
+        from: f64,
+        to: f64,
+    ) -> (f64, Option<f64>) {
+        let t = &series.t;
+        let [mut next, end] = [from, to].map(|at| t.partition_point(|t| *t < at));
+        let begin = windows.partition_point(|w| w.row < next);
+        let inside = windows[begin..].iter().take_while(|w| w.row + w.rows <= end);
         let (mut time, mut energy) = (0.0, 0.0);
-        for window in inside {
-            time += window.end - window.begin;
-            energy += window.mean * (window.end - window.begin);
+        for window in inside.filter(|w| self.has(w)) {
+            for row in next.max(window.row)..window.row + window.rows {
+                let until = t.get(row + 1).map_or(to, |t| t.min(to));
+                time += until - t[row];
+                energy += series.power[row] * (until - t[row]);
+            }
+            next = window.row + window.rows;
         }
         (time, (time > 0.0).then(|| energy / time))
     }
+}
+
+/// Whether the floor of the power confirms that the power at rest has changed by the meter.
+pub(super) fn is_gain(ratio: f64, levels: [Level; 2]) -> bool {
+    let [before, after] = levels.map(|level| level.floor_w);
+    let (rest, floor) = (ratio.ln(), (after / before).ln());
+    rest * floor > 0.0 && floor.abs() >= CONFIRMED * rest.abs()
+}
+
+/// The value at this share of the values; sorts them.
+fn quantile(values: &mut [f64], share: f64) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get((share * values.len() as f64) as usize).copied()
 }
 
 /// The half-sample mode of sorted values (D. R. Bickel, R. Frühwirth, Computational Statistics & Data
@@ -144,8 +187,8 @@ mod tests {
         let windows = windows(&series);
         let level = Level::of(&windows).expect("a level");
         assert!((level.power_w - 300.0).abs() < 2.0, "{level:?}");
-        let (time, mean) = level.within(&windows, 0.0, 100.0);
-        assert!((time / 10.0 - 2.5).abs() < 0.5, "{time}");
+        let (time, mean) = level.within(&series, &windows, 0.0, 100.0);
+        assert!((time / 10.0 - 2.5).abs() < 0.1, "{time}");
         assert!((mean.expect("rest") - 300.0).abs() < 1.0);
     }
 }

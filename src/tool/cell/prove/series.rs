@@ -1,11 +1,14 @@
 //! The power of a log over time, and its integral.
 
 use super::error::ProveError;
+use super::periodic::deviation;
 use super::side::PowerLog;
 use crate::learn::log::{Channel, Log, median_step};
 
 /// Mean below which a cabinet's power is in kW: no cabinet takes less than this in W, none more in kW.
 const KILOWATTS: f64 = 20.0;
+/// Standard deviation of the power of a robot that moves, as a share of the mean: it is more than this.
+const FLAT: f64 = 1e-3;
 /// An interval longer than the usual one by this factor is a gap.
 const GAP: f64 = 3.5;
 
@@ -55,6 +58,9 @@ impl Series {
                 let mean = power.iter().sum::<f64>() / power.len().max(1) as f64;
                 if mean <= 0.0 {
                     return Err(ProveError::Negative { file: file(), power_w: mean });
+                }
+                if deviation(power) < FLAT * mean * (power.len() as f64).sqrt() {
+                    return Err(ProveError::Constant { file: file() });
                 }
                 let unit = if mean < KILOWATTS { 1000.0 } else { 1.0 };
                 (power.iter().map(|x| unit * x).collect(), mean < KILOWATTS)

@@ -60,6 +60,10 @@ pub(super) fn spans(
         return Ok((Source::Events, inside.map(span).collect()));
     }
     let starts = periodic::starts(series);
+    if starts.is_empty() {
+        let why = ": there is no column `cycle`, and the power alone has no cycles that resemble each other";
+        return Err(ProveError::NoCycles { file: of.shown.clone(), why: why.to_owned() });
+    }
     let span = |pair: &[f64]| Span {
         begin: pair[0],
         end: pair[1],

@@ -31,8 +31,8 @@ pub(super) struct Kind {
     pub(super) way: Option<String>,
 }
 
-/// Points of the course of the power over a cycle: few, because a retrofit moves the peaks.
-pub(super) const POINTS: usize = 16;
+/// Points of the course of the power over a cycle: enough to tell ten movements apart.
+pub(super) const POINTS: usize = 64;
 
 /// A complete cycle.
 #[derive(Clone, Debug)]

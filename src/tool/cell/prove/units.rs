@@ -140,7 +140,8 @@ impl Measured {
                 }
                 continue;
             };
-            let (time, power) = level.within(&self.series[*log].1, *begin, *end);
+            let (series, windows) = &self.series[*log];
+            let (time, power) = level.within(series, windows, *begin, *end);
             unit.rest_w = power;
             if !with_events {
                 unit.rest_s = time;
