@@ -14,8 +14,6 @@ use tempfile::TempDir;
 /// Power at rest, W, and the longest motion, s.
 const REST_W: f64 = 300.0;
 const MOTION_S: f64 = 6.0;
-/// Interval of the rows, s.
-const STEP: f64 = 0.05;
 
 /// How a log is made.
 #[derive(Clone)]
@@ -30,6 +28,13 @@ struct Made {
     wait_s: f64,
     /// Time that the motion takes more, s.
     slower_s: f64,
+    /// Interval of the rows, s, and the largest error of the meter, W.
+    step: f64,
+    noise_w: f64,
+    /// Movements of a cycle.
+    movements: f64,
+    /// Power above rest by which the robot moves during the wait but for its last 0.8 s, W.
+    creep_w: f64,
     /// First part of the names of parts, and whether there is the column.
     part: Option<&'static str>,
     unit: f64,
@@ -49,6 +54,10 @@ impl Made {
             gain: 1.0,
             wait_s: 2.0,
             slower_s: 0.0,
+            step: 0.05,
+            noise_w: 0.5,
+            movements: 6.0,
+            creep_w: 0.0,
             part: None,
             unit: 1.0,
             has_cycle: true,
@@ -77,16 +86,19 @@ impl Made {
             let wait = self.wait_s + 0.6 * (random.f64() - 0.5);
             let wait = wait + if self.stopped == Some(cycle) { 200.0 } else { 0.0 };
             let motion = MOTION_S + self.slower_s;
-            while (f64::from(row) * STEP) < now + motion + wait {
-                let t = f64::from(row) * STEP;
+            while (f64::from(row) * self.step) < now + motion + wait {
+                let t = f64::from(row) * self.step;
                 let u = (t - now) / motion;
                 let shape = if u < 1.0 {
-                    1.0 - 0.8 * (6.0 * std::f64::consts::TAU * u).cos() * (1.0 - u)
+                    1.0 - 0.8 * (self.movements * std::f64::consts::TAU * u).cos() * (1.0 - u)
                 } else {
                     0.0
                 };
                 let power = REST_W + 500.0 * MOTION_S / motion * self.work * noise * shape;
-                let power = self.unit * self.gain * (power + random.f64() - 0.5);
+                let creeps = u >= 1.0 && t < now + motion + wait - 0.8;
+                let power = power + if creeps { self.creep_w } else { 0.0 };
+                let error = 2.0 * self.noise_w * (random.f64() - 0.5);
+                let power = self.unit * self.gain * (power + error);
                 let _ = write!(out, "{:.3},{power:.5}", t + self.start);
                 if self.has_cycle {
                     let _ = write!(out, ",{}", cycle + 1);
@@ -197,6 +209,15 @@ fn longer_waits_are_no_waste_and_slower_motion_is_no_saving() {
     let proof = campaign.proof(&Made::new(8), &Made { wait_s: 3.0, ..Made::new(9) });
     assert_eq!(proof["verdict"], "no_difference", "{proof:#}");
     assert!(percent(&proof, "value").abs() < 1.0, "{proof:#}");
+    // The same by a meter that is slow and noisy.
+    let by_meter =
+        |seed: u64, wait_s: f64| Made { wait_s, step: 0.1, noise_w: 12.0, ..Made::new(seed) };
+    let values = (0..4).map(|seed| {
+        let proof = campaign.proof(&by_meter(40 + seed, 2.0), &by_meter(50 + seed, 3.0));
+        percent(&proof, "value")
+    });
+    let mean = values.sum::<f64>() / 4.0;
+    assert!(mean.abs() < 0.5, "{mean}");
     // The slack is used up: the cycle has the same length, the motion needs 5 % of all energy less.
     let slack = Made { wait_s: 1.4, slower_s: 0.6, ..Made::new(10).saving(0.05) };
     let proof = campaign.proof(&Made::new(8), &slack);
@@ -232,10 +253,34 @@ fn the_meter_is_checked() {
     let off = Made { gain: 0.96, ..Made::new(16) };
     let proof = campaign.proof(&Made::new(15), &off);
     assert_ne!(proof["verdict"], "saves", "{proof:#}");
-    assert!(mentions(&proof, "power at rest"), "{proof:#}");
+    assert!(mentions(&proof, "power at rest is"), "{proof:#}");
+    // Waits used up by slow motion are no other power at rest.
+    let creeps = Made { creep_w: 45.0, ..Made::new(31).saving(0.05) };
+    let proof = campaign.proof(&Made::new(15), &creeps);
+    assert_eq!(proof["doubts"].as_array().unwrap().len(), 0, "{proof:#}");
+    assert_eq!(proof["verdict"], "saves", "{proof:#}");
     let other = Made { unit: 5.0, ..Made::new(17) };
     let [before, after] = [campaign.log("a.csv", &Made::new(15)), campaign.log("b.csv", &other)];
     refused(&["prove", "--before", &before, "--after", &after], "same meter");
+}
+
+#[test]
+fn another_product_is_noticed() {
+    let campaign = Campaign::new();
+    for movements in [3.0, 9.0] {
+        let other = Made { movements, work: 0.8, ..Made::new(32) };
+        let proof = campaign.proof(&Made::new(15), &other);
+        assert_ne!(proof["verdict"], "saves", "{proof:#}");
+        assert!(mentions(&proof, "another product"), "{proof:#}");
+    }
+    // Used-up waits and longer waits leave the order of the movements.
+    for of in [
+        Made { wait_s: 0.9, slower_s: 1.1, ..Made::new(33) },
+        Made { wait_s: 3.0, ..Made::new(34) },
+    ] {
+        let proof = campaign.proof(&Made::new(15), &of.saving(0.05));
+        assert!(!mentions(&proof, "another product"), "{proof:#}");
+    }
 }
 
 #[test]
@@ -256,6 +301,24 @@ fn cycles_are_found_by_the_power_alone() {
     assert_eq!(proof["verdict"], "saves", "{proof:#}");
     assert!((percent(&proof, "value") - 5.0).abs() < 1.0, "{proof:#}");
     assert!(number(&proof, "/cycles/before") >= 26.0);
+    // Movements that resemble each other are no cycles.
+    let mut random = fastrand::Rng::with_seed(35);
+    let (mut text, mut row) = ("t,power\n".to_owned(), 0);
+    for _ in 0..40 {
+        let rows = 140 + 40 + (40.0 * random.f64()) as u32;
+        let work = 1.0 + 0.05 * random.f64();
+        for i in 0..rows {
+            let u = f64::from(i) / 140.0;
+            let wave = (5.0 * std::f64::consts::PI * u).sin().powi(2);
+            let power = if u < 1.0 { work * (900.0 * wave + 200.0 * u) } else { 0.0 };
+            let error = 8.0 * (random.f64() + random.f64() - 1.0);
+            let _ = writeln!(text, "{:.1},{:.2}", 0.1 * f64::from(row), 300.0 + power + error);
+            row += 1;
+        }
+    }
+    let before = written(&campaign.folder, "repeats.csv", text);
+    let plan = json(&["prove", "--before", &before, "--format", "json", "--quiet"]);
+    assert!((number(&plan, "/cycle_s/before") - 20.0).abs() < 1.0, "{plan:#}");
 }
 
 /// The log of events of the same cycles: the first cycle begins at 0, each has a wait and an output.
@@ -380,6 +443,10 @@ fn bad_logs_are_refused_by_name() {
     check("versions.csv", &versions, "one version", "program 22");
     check("names.csv", &first.replace("power", "watts"), "--map power=NAME", "line 1");
     check("negative.csv", &Made { unit: -1.0, ..plain.clone() }.text(), "sign", "line 1");
+    let stuck: String =
+        (0..2000).map(|row| format!("{:.1},500,{}\n", 0.1 * f64::from(row), row / 80)).collect();
+    check("stuck.csv", &format!("t,power,cycle\n{stuck}"), "check the meter", "never changes");
+    check("binary.csv", "\u{1b}[31mred\u{7},\u{fffd}\n1,2\n", "names the columns", "\\u{1b}[31m");
     check("empty.csv", "", "the first row names the columns", "empty.csv");
     let short = first.lines().take(30).collect::<Vec<_>>().join("\n") + "\n";
     check("short.csv", &short, "column `cycle`", "short.csv");
@@ -388,6 +455,7 @@ fn bad_logs_are_refused_by_name() {
     refused(&["prove", "--before", &good, "--after", &good], "each log once");
     refused(&["prove", "--before", &good, "--after", "/nowhere/x.csv"], "check the path");
     refused(&["prove", "--before", &good, "--effect", "x"], "such as 3%");
+    refused(&["prove", "--before", &good, "--promised=-900"], "between -100 and 100 %");
 }
 
 #[test]

@@ -31,7 +31,7 @@ const PART: usize = 4;
 /// How well the halves of a side have to resemble each other for a course to say something, and the share of
 /// that below which the sides are of different work.
 const STEADY: f64 = 0.85;
-const OTHER: f64 = 0.75;
+const OTHER: f64 = 0.8;
 /// Change of the duration that no retrofit makes without being asked, share.
 const LONGER: f64 = 0.15;
 

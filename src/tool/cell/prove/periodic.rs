@@ -39,8 +39,8 @@ pub(super) fn starts(series: &Series) -> Vec<f64> {
     let count = ((last - first) / step) as usize;
     let at = |i: usize| first + step * i as f64;
     let x: Vec<f64> = (0..count).map(|i| series.mean(at(i), at(i + 1))).collect();
-    let found = periods(&x).into_iter().map(|period| cycles(&x, period));
-    let found = found.filter(|found| is_one_work(&x, found)).next().unwrap_or_default();
+    let mut found = periods(&x).into_iter().map(|period| cycles(&x, period));
+    let found = found.find(|found| is_one_work(&x, found)).unwrap_or_default();
     found.into_iter().map(|(place, shift)| at(place) + step * shift).collect()
 }
 
