@@ -21,8 +21,7 @@ use crate::retime::optimize::retime::SLOWEST;
 use crate::tool::cell::slack::Planned;
 use crate::tool::config::{Config, Idle};
 use crate::tool::emit::Layout;
-use crate::tool::report::place::Places;
-use crate::tool::report::{self};
+use crate::tool::report::{self, place::Places};
 use crate::tool::retrofit::{
     Budget, CLOSEST_S, Form, Objective, SPACING_S, Settings, declared_in, freed, is_streams,
     retrofit, written_in,
