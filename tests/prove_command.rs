@@ -443,9 +443,9 @@ fn bad_logs_are_refused_by_name() {
     check("versions.csv", &versions, "one version", "program 22");
     check("names.csv", &first.replace("power", "watts"), "--map power=NAME", "line 1");
     check("negative.csv", &Made { unit: -1.0, ..plain.clone() }.text(), "sign", "line 1");
-    let stuck: String =
-        (0..2000).map(|row| format!("{:.1},500,{}\n", 0.1 * f64::from(row), row / 80)).collect();
-    check("stuck.csv", &format!("t,power,cycle\n{stuck}"), "check the meter", "never changes");
+    let rows = (0..2000).map(|row| format!("{:.1},500,{}", 0.1 * f64::from(row), row / 80));
+    let stuck: Vec<String> = std::iter::once("t,power,cycle".to_owned()).chain(rows).collect();
+    check("stuck.csv", &(stuck.join("\n") + "\n"), "check the meter", "never changes");
     check("binary.csv", "\u{1b}[31mred\u{7},\u{fffd}\n1,2\n", "names the columns", "\\u{1b}[31m");
     check("empty.csv", "", "the first row names the columns", "empty.csv");
     let short = first.lines().take(30).collect::<Vec<_>>().join("\n") + "\n";
