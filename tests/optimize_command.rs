@@ -549,7 +549,7 @@ fn unusual_statements_have_their_true_reason() {
     let cases = [
         ("", "WaitTime 1E400;", &[][..]),
         ("", "WaitTime -3;", &[]),
-        ("", "WaitUntil diOn=1;", &["--input", "diNo=2", "--input", "DiOther=1"]),
+        ("", "WaitUntil diOn=1;", &["--input", "diNo=2"]),
         (clash, "rB;\nWaitTime nX;\nMoveAbsJ jB,[nX,5,5,5],fine,tP;", &[]),
         (heavy, "MoveAbsJ jB,v1000,fine,tH;", &[]),
         (endless, "rEndless;", &[]),

@@ -81,7 +81,7 @@ const LONGEST: f64 = 1.8;
 const SHORTER: [f64; 7] = [0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.3];
 
 /// Steps towards the fastest profile with streams of least energy.
-const BISECTIONS: usize = 3;
+const BISECTIONS: usize = 2;
 
 /// The stream of a run.
 ///

@@ -159,6 +159,10 @@ fn time_bounds(
 ) -> Result<Vec<(f64, f64)>, RetrofitError> {
     let cycle_s = original.cycle.simulation.cycle_s;
     let before = |task: &Task<'_>| task.run.duration();
+    // A takt of at least the original cycle makes no run faster, as in `goals`.
+    if takt >= cycle_s {
+        return Ok(tasks.iter().map(|(_, task)| (before(task), SLOWEST * before(task))).collect());
+    }
     let least: Vec<f64> = tasks
         .par_iter()
         .map(|(_, task)| fastest(task).unwrap_or(f64::MAX).min(before(task)))
@@ -171,10 +175,8 @@ fn time_bounds(
         let least = rounded_up(fixed + shortest);
         return Err(RetrofitError::Takt { takt, least, fixed: fixed.max(0.0) });
     }
-    // A takt of at least the original cycle makes no run faster, as in `goals`.
     let bounds = |((_, task), least): (&(usize, Task<'_>), &f64)| {
-        let shortest = if takt < cycle_s { *least } else { before(task) };
-        (shortest, (SLOWEST * before(task)).max(*least))
+        (*least, (SLOWEST * before(task)).max(*least))
     };
     Ok(tasks.iter().zip(&least).map(bounds).collect())
 }
