@@ -35,8 +35,10 @@ const PARTLY: [f64; 3] = [0.25, 0.5, 0.75];
 const MIN_CYCLES: usize = 12;
 /// Share of visits that find everything ready from which on there is nothing to learn.
 const ALWAYS: f64 = 0.95;
-/// What is there already in a larger share of the visits does not answer the robot.
-const ANSWERS: f64 = 0.1;
+/// What is there already in a larger share of the visits does not answer the robot: an output that it
+/// sets where it waits (a door may be open already), or its mere coming.
+const ANSWERS_OUTPUT: f64 = 0.5;
+const ANSWERS_COMING: f64 = 0.1;
 /// A wait for no signal that varies no more, s, lasts as long as the program says.
 const STATED_S: f64 = 0.02;
 
@@ -163,8 +165,8 @@ struct Comparison<'a> {
     evidence: &'a Evidence<'a>,
     answers: LogDensities,
     rivals: Vec<Rival<'a>>,
-    /// Share of the visits that find everything ready.
-    at_once: f64,
+    /// Whether few enough visits find everything ready for an answer to the robot.
+    may_answer: bool,
 }
 
 impl<'a> Comparison<'a> {
@@ -200,7 +202,9 @@ impl<'a> Comparison<'a> {
         let rivals: Vec<Rival<'a>> = rivals.collect();
         let ready = samples.samples.iter().filter(|sample| sample.at_once()).count();
         let at_once = ready as f64 / samples.samples.len().max(1) as f64;
-        Comparison { evidence, answers, rivals, at_once }
+        let may_answer =
+            at_once <= if samples.has_request() { ANSWERS_OUTPUT } else { ANSWERS_COMING };
+        Comparison { evidence, answers, rivals, may_answer }
     }
 
     fn verdict(&self) -> Verdict {
@@ -242,7 +246,7 @@ impl<'a> Comparison<'a> {
         let strongest = self.rivals.iter().max_by(|a, b| a.over_process.total_cmp(&b.over_process));
         let log_odds = strongest.map_or(log_odds, |rival| rival.over_process);
         let slope = strongest.map(of);
-        let is_process = log_odds <= -PROCESS_ODDS.ln() && self.at_once <= ANSWERS;
+        let is_process = log_odds <= -PROCESS_ODDS.ln() && self.may_answer;
         let (kind, reason) = if is_process {
             (WaitKind::Process, Reason::Answers)
         } else {
