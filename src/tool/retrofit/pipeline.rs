@@ -21,7 +21,7 @@ use super::results::results;
 use super::rewritten::Rewritten;
 use super::rounds::verified;
 use super::settings::{Budget, Form, Objective, Settings};
-use super::sharing::{enforce_cycle_time, streams, undo_costly_streams};
+use super::sharing::{enforce_cycle_time, faster, streams, undo_costly_streams};
 use super::simulated::Simulated;
 use super::speeds;
 use super::torque_demand::mean_robot;
@@ -80,7 +80,7 @@ fn with_streams(
             let (plan, kept) = enforce_cycle_time(plan, &tasks, outcomes);
             outcomes = match settings.objective {
                 Objective::Energy => undo_costly_streams(&plan, &tasks, kept),
-                Objective::Time => kept,
+                Objective::Time => faster(&tasks, kept),
             };
         }
         Budget::Factor(factor) => check_factor(factor, &tasks, &outcomes)?,

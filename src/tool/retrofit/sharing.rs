@@ -136,3 +136,14 @@ pub(super) fn undo_costly_streams(
     }
     outcomes
 }
+
+/// The outcomes without streams that are no faster than their run.
+pub(super) fn faster(tasks: &[(usize, Task<'_>)], outcomes: Vec<Outcome>) -> Vec<Outcome> {
+    let is_faster = |task: &Task<'_>, outcome: Outcome| match outcome {
+        Ok(found) if found.duration_s >= task.run.duration() => {
+            Err(Reason::TooShort(found.duration_s))
+        }
+        outcome => outcome,
+    };
+    tasks.iter().zip(outcomes).map(|((_, task), outcome)| is_faster(task, outcome)).collect()
+}
