@@ -3,7 +3,8 @@
 
 use super::blocks::{block_length, long_run_variance};
 use super::estimate::Estimate;
-use super::periodic::{correlation, deviation};
+use super::outliers::deviation;
+use super::periodic::correlation;
 use super::rest::{Level, is_gain};
 
 /// A reason to widen the interval.

@@ -68,6 +68,12 @@ fn range(values: &[f64], share: f64) -> [f64; 2] {
     [middle - width, middle + width]
 }
 
+/// Root of the sum of squares about the mean.
+pub(super) fn deviation(x: &[f64]) -> f64 {
+    let mean = x.iter().sum::<f64>() / x.len() as f64;
+    x.iter().map(|x| (x - mean).powi(2)).sum::<f64>().sqrt()
+}
+
 /// The median; 0 without values.
 pub(super) fn median(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();

@@ -4,7 +4,7 @@
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
-use super::outliers::median;
+use super::outliers::{deviation, median};
 use super::series::Series;
 
 /// Most points of the search.
@@ -158,12 +158,6 @@ fn matches(x: &[f64], template: &[f64], period: usize) -> Vec<(usize, f64)> {
     }
     found.sort_by_key(|(place, _)| *place);
     found
-}
-
-/// Root of the sum of squares about the mean.
-pub(super) fn deviation(x: &[f64]) -> f64 {
-    let mean = x.iter().sum::<f64>() / x.len() as f64;
-    x.iter().map(|x| (x - mean).powi(2)).sum::<f64>().sqrt()
 }
 
 /// Correlation of two series; 0 where one is constant.

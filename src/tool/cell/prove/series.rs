@@ -1,7 +1,7 @@
 //! The power of a log over time, and its integral.
 
 use super::error::ProveError;
-use super::periodic::deviation;
+use super::outliers::deviation;
 use super::side::PowerLog;
 use crate::learn::log::{Channel, Log, median_step};
 
