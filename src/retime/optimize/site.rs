@@ -84,7 +84,7 @@ pub fn sites(program: &Program, simulation: &Simulation) -> Vec<Site> {
             .or_else(|| places.in_compact_if(run).then_some(Reason::CompactIf))
             .or_else(|| output_in_motion(simulation, index, run.moves.len()))
             .or_else(|| joined.contains(&index).then_some(Reason::FliesOn))
-            .or_else(|| places.ends_in_fly_by(run).then_some(Reason::FliesOn));
+            .or_else(|| places.ends_in_fly_by(run).then(|| flies_on(simulation, index)));
         let is_forward = head.file == tail.file && head.start <= tail.start;
         let span = if is_forward { head.to(tail) } else { head };
         let site = sites.entry(pieces.clone()).or_insert_with(|| Site {
@@ -166,6 +166,19 @@ fn output_in_motion(simulation: &Simulation, run: usize, count: usize) -> Option
     }
 }
 
+/// Why the end of a run in a zone prevents a stream. `run`: its event.
+fn flies_on(simulation: &Simulation, run: usize) -> Reason {
+    let behind = simulation.events[run + 1..].iter();
+    let next = behind.map(|event| &event.what).find(|what| !matches!(what, What::Output(..)));
+    match next {
+        Some(What::Left(next)) if next.moves => Reason::Unresolved(format!(
+            "it ends in a zone, and the movement behind it could not be worked out: {}",
+            next.reason
+        )),
+        _ => Reason::FliesOn,
+    }
+}
+
 /// The last run and the first run of the repetition, if the last movement ends in a fly-by point
 /// and both are one run when the program repeats.
 fn joined_by_repetition(simulation: &Simulation) -> Vec<usize> {
@@ -185,10 +198,17 @@ fn joined_by_repetition(simulation: &Simulation) -> Vec<usize> {
     std::iter::once(last).chain(first).collect()
 }
 
+/// The settings that a guard compares: `VelSet`, `AccSet`, `SingArea`.
+fn settings(run: &Run) -> Option<([f64; 4], bool)> {
+    let settings = &run.moves.first()?.movement.settings;
+    Some((settings.limits(), settings.axiswise_wrist()))
+}
+
 fn same(a: &Run, b: &Run) -> bool {
     let close = |a: &Joints, b: &Joints| (0..DOF).all(|j| (a[j] - b[j]).abs() < SAME_START);
     close(&a.start, &b.start)
         && a.load == b.load
+        && settings(a) == settings(b)
         && a.legs.len() == b.legs.len()
         && a.legs
             .iter()

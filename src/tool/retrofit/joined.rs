@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::files::file_and_line;
 use super::guards::Guards;
-use crate::rapid::builtins::instruction;
+use crate::rapid::builtins::{instruction, is_movement};
 use crate::rapid::ir::graph::Step;
 use crate::rapid::ir::hir::{Arg, Callee, Expr, ParamMode, Stmt, StmtKind};
 use crate::rapid::ir::program::{Program, RoutineId, Symbol};
@@ -81,24 +81,34 @@ struct Between<'a, 'p> {
     /// Whether the program handles errors of arguments: an error would then come before the
     /// movements that are put off.
     error_handler: bool,
-    /// The data of statements that write what another task may read.
+    /// What statements write that others may read meanwhile, in words.
     shared: RefCell<BTreeMap<Span, String>>,
 }
 
 impl Between<'_, '_> {
-    /// The statements of which one runs between two pieces.
+    /// The statements of which one runs between two pieces: not the movements with which another run
+    /// goes on.
     fn named(&self, statements: BTreeSet<Span>) -> String {
         let shared = self.shared.borrow();
+        let all = self.program.routines().flat_map(|(_, routine)| routine.statements());
+        let called = all.filter_map(|stmt| match &stmt.kind {
+            StmtKind::Call(call) => match &call.callee {
+                Callee::Name(name) => Some((stmt.span, name.text.as_str())),
+                Callee::Late(_) => None,
+            },
+            _ => None,
+        });
+        let called: BTreeMap<Span, &str> = called.collect();
         let place = |span: Span| {
             let place = file_and_line(self.guards.files(), span);
-            match shared.get(&span) {
-                Some(data) => {
-                    format!("{place} (writes {data}; --only-task: no other task reads it)")
-                }
-                None => place,
-            }
+            let name = called.get(&span).map_or_else(String::new, |name| format!("{name} in "));
+            let remark = shared.get(&span).map_or_else(String::new, |text| format!(" ({text})"));
+            format!("{name}{place}{remark}")
         };
-        let places: Vec<String> = statements.into_iter().take(NAMED).map(place).collect();
+        let moves = |span: &Span| called.get(span).is_some_and(|name| is_movement(name));
+        let (moving, others): (Vec<Span>, Vec<Span>) = statements.into_iter().partition(moves);
+        let shown = if others.is_empty() { moving } else { others };
+        let places: Vec<String> = shown.into_iter().take(NAMED).map(place).collect();
         format!("{} runs", places.join(" or "))
     }
 
@@ -146,13 +156,18 @@ impl Between<'_, '_> {
         let Some(name) = target.base() else { return true };
         let mut params = self.program.routine(routine).params.iter();
         if let Some(param) = params.find(|param| param.name.key == name.key) {
+            if param.mode != ParamMode::In {
+                let text = format!("writes through the parameter {}", name.text);
+                self.shared.borrow_mut().insert(statement, text);
+            }
             return param.mode == ParamMode::In;
         }
         match self.program.resolve(routine.module, &name.key) {
             Some(Symbol::Data(id)) => {
                 if self.guards.is_read_elsewhere(id) {
-                    let data = self.program.data(id).name.text.clone();
-                    self.shared.borrow_mut().insert(statement, data);
+                    let data = &self.program.data(id).name.text;
+                    let text = format!("writes {data}; --only-task: no other task reads it");
+                    self.shared.borrow_mut().insert(statement, text);
                 }
                 !self.guards.is_seen_meanwhile(id)
             }
