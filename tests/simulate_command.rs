@@ -81,6 +81,28 @@ fn levels_and_passes_change_the_simulated_cycle() {
     assert!(stopped, "{notes:?}");
 }
 
+/// The answer of an operator decides a branch; without it the note names the way out.
+#[test]
+fn answers_of_the_operator_can_be_stated() {
+    let none = "[9E9,9E9,9E9,9E9,9E9,9E9]";
+    let home = format!("MoveAbsJ [[0,0,0,0,60,0],{none}],v1000,fine,tool0;\n");
+    let (_folder, path) = module(format!(
+        "MODULE M\nVAR num nAns;\nPROC main()\n{home}TPReadNum nAns, \"how many\";\nTEST nAns\nCASE 2:\n\
+         MoveAbsJ [[20,0,0,0,60,0],{none}],v1000,fine,tool0;\n{home}ENDTEST\nENDPROC\nENDMODULE"
+    ));
+    let [robot, name] = ROBOT;
+    let base = ["simulate", &path, robot, name, "--format", "json"];
+    let result = |options: &[&str]| json(&[&base[..], options].concat());
+    let moves = |result: &Value| result["moves"].as_array().unwrap().len();
+    let unknown = result(&[]);
+    assert_eq!(moves(&unknown), 1);
+    assert!(unknown["unresolved"].to_string().contains("--assume NAME=NUMBER"), "{unknown}");
+    let stated = result(&["--assume", "nAns=2"]);
+    assert_eq!(moves(&stated), 3);
+    assert!(stated["assumed"].to_string().contains("nAns is 2"), "{stated}");
+    refused(&[&base[..], &["--assume", "nAnz=2"]].concat(), "did you mean nAns?");
+}
+
 #[test]
 fn movements_with_actions_are_marked_and_energies_add_up() {
     let [robot, name] = ROBOT;

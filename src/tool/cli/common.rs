@@ -54,7 +54,8 @@ pub(super) struct CellArgs {
     #[arg(long = "input", value_name = "SIGNAL=SECONDS")]
     pub(super) inputs: Vec<String>,
 
-    /// The level of an input that the program asks for, such as di1=1; otherwise 0.
+    /// The level of an input that the program asks for, such as di1=1; otherwise 0. The answer of an
+    /// operator, such as nCount=3.
     #[arg(long = "assume", value_name = "SIGNAL=LEVEL")]
     pub(super) levels: Vec<String>,
 

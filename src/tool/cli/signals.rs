@@ -6,24 +6,30 @@ use anyhow::bail;
 
 use super::common::{CellArgs, Job};
 use crate::arm::robot::nearest;
-use crate::rapid::builtins::SignalKind;
+use crate::rapid::builtins::{SignalKind, instruction};
+use crate::rapid::ir::hir::{Arg, Call, Callee, ExprKind, StmtKind};
 use crate::rapid::ir::program::Program;
 use crate::rapid::ir::signals::{Signal, signals};
 use crate::retime::motion::Simulation;
 use crate::tool::retrofit::read_program;
 
-/// Checks the signal names of `--assume` and `--input`, and the levels.
+/// Checks the signal names of `--assume` and `--input`, and the levels. `--assume` also states answers of
+/// the operator.
 pub(super) fn check(
     args: &CellArgs,
     levels: &BTreeMap<String, f64>,
     program: &Program,
 ) -> anyhow::Result<()> {
     let known = signals(program);
+    let answers = answers(program);
     for (option, texts) in [("--assume", &args.levels), ("--input", &args.inputs)] {
         for text in texts {
             let name = signal_name(text);
-            if !known.contains_key(&name.to_lowercase()) {
+            let key = name.to_lowercase();
+            let is_answer = option == "--assume" && answers.contains_key(&key);
+            if !known.contains_key(&key) && !is_answer {
                 let names = known.values().map(|signal| signal.name.as_str());
+                let names = names.chain(answers.values().copied());
                 let way_out = nearest(name, names).map_or_else(
                     || "leave it out or correct the name".to_owned(),
                     |near| format!("did you mean {near}?"),
@@ -49,6 +55,22 @@ pub(super) fn check(
         }
     }
     Ok(())
+}
+
+/// The data that instructions ask the operator for, by lower-case name.
+fn answers(program: &Program) -> BTreeMap<String, &str> {
+    let statements = program.routines().flat_map(|(_, routine)| routine.statements());
+    let asked = statements.filter_map(|stmt| {
+        let StmtKind::Call(Call { callee: Callee::Name(name), args, .. }) = &stmt.kind else {
+            return None;
+        };
+        instruction(&name.key).filter(|it| it.asks_operator())?;
+        match &args.iter().find_map(Arg::positional)?.kind {
+            ExprKind::Ref(data) => Some((data.key.clone(), data.text.as_str())),
+            _ => None,
+        }
+    });
+    asked.collect()
 }
 
 /// The same for a program that is not read yet.

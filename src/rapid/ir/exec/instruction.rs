@@ -1,5 +1,7 @@
 //! RAPID instructions: the dispatch by effect, outputs and counters.
 
+use std::sync::Arc;
+
 use super::arguments::Arguments;
 use super::executor::{Cell, Executor};
 use super::flow::{Flow, number_text};
@@ -7,7 +9,7 @@ use super::waits::Length;
 use crate::rapid::builtins::{self, ArgumentPlace, Count, Effect, Instruction, Level, Wait};
 use crate::rapid::ir::hir::{Arg, Expr, ExprKind, Stmt};
 use crate::rapid::ir::movement::Output;
-use crate::rapid::ir::value::{Datum, Dependence, Value};
+use crate::rapid::ir::value::{Datum, Dependence, Origin, Value};
 use crate::rapid::ir::walk::arguments_with_places;
 
 impl Executor<'_> {
@@ -31,8 +33,11 @@ impl Executor<'_> {
             Effect::Wait(Wait::Standstill) => {
                 self.wait(stmt.span, text, Length::Stated(0.0), None);
             }
-            Effect::Wait(Wait::Operator | Wait::Outside) => {
+            Effect::Wait(wait @ (Wait::Operator | Wait::Outside)) => {
                 self.written(text, instruction, args);
+                if wait == Wait::Operator {
+                    self.answered(args);
+                }
                 // The program does not state how long.
                 self.wait(stmt.span, text, Length::Until(None), None);
             }
@@ -67,8 +72,23 @@ impl Executor<'_> {
 
     /// Marks the data that an instruction writes as unknown.
     fn written(&mut self, text: &str, instruction: &Instruction, args: &[Arg]) {
-        let how = format!("is written by {text}");
+        let way_out = "; --assume NAME=NUMBER states the answer";
+        let way_out = if instruction.asks_operator() { way_out } else { "" };
+        let how = format!("is written by {text}{way_out}");
         self.mark_unknown_if(args, &how, |place, _| instruction.may_write_to(place));
+    }
+
+    /// The answer of the operator, if the user states it.
+    fn answered(&mut self, args: &[Arg]) {
+        let Some(answer) = args.iter().find_map(Arg::positional) else { return };
+        let ExprKind::Ref(name) = &answer.kind else { return };
+        let Some(level) = self.machine.stated_level(&name.key) else { return };
+        let Some(cell) = self.cell_of(name) else { return };
+        self.write(cell, answer, Datum::Num(level));
+        let input: Arc<str> = name.text.as_str().into();
+        self.cells[cell].history = Origin::of(Dependence::Input(input.clone()));
+        self.cells[cell].input = Some(input);
+        self.assume(format!("{} is {level} (stated by --assume)", name.text));
     }
 
     /// Marks all data among the arguments as unknown.
