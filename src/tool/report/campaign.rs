@@ -47,7 +47,7 @@ pub fn waits(result: &Value) -> Option<String> {
     let waits = result["waits"].as_array()?;
     let count = |kind: &str| waits.iter().filter(|wait| wait["kind"] == kind).count();
     Some(format!(
-        "{} waits are slack, {} belong to the process, {} are not told apart.",
+        "Waits: {} slack, {} of the process, {} not told apart.",
         count("slack"),
         count("process"),
         count("unknown")

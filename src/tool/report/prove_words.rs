@@ -19,6 +19,11 @@ pub(super) fn sentence(proof: &Proof) -> String {
         Verdict::Costs => {
             format!("costs {:.1} % more ({:.1} to {:.1}) per part", -value, -high, -low)
         }
+        _ if proof.doubts.iter().any(|doubt| doubt.withholds) => {
+            format!(
+                "no verdict, as other work may have been done: {value:.1} % ({low:.1} to {high:.1}) per part"
+            )
+        }
         Verdict::NoDifference => {
             format!("no difference is shown: {value:.1} % ({low:.1} to {high:.1}) per part")
         }

@@ -263,7 +263,12 @@ fn doubts(
         step(&of.residual[0], 0, of.saving),
         step(&of.residual[1], 1, of.saving),
         swapped(of),
-        other_work([&courses[0], &courses[1]], of.duration, turned),
+        // Machines that let the robot wait longer are no other work.
+        other_work(
+            [&courses[0], &courses[1]],
+            [of.duration[0], of.duration[1] - of.foreign],
+            turned,
+        ),
     ];
     found.into_iter().flatten().collect()
 }

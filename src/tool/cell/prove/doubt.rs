@@ -196,7 +196,8 @@ pub(super) enum Turned {
     Anyhow,
 }
 
-/// The mean courses of the power over a cycle, and the mean durations: other work has others. Each side
+/// The mean courses of the power over a cycle, and the mean durations without foreign waits: other work has
+/// others. Each side
 /// has its cycles in the order of time; `turned`: a cycle may begin at another place on each side.
 pub(super) fn other_work(
     courses: [&[&[f64]]; 2],
@@ -229,7 +230,7 @@ pub(super) fn other_work(
         )
     } else if longer.abs() > LONGER {
         format!(
-            "a cycle takes {:+.1} % of the time before: another product or process? No verdict: give logs of the \
+            "a cycle without its longer waits takes {:+.1} % of the time before: another product or process? No verdict: give logs of the \
              same work, with columns part or payload",
             100.0 * longer
         )

@@ -41,7 +41,6 @@ pub fn prove_report(proof: &Proof, command: &str) -> Result<String, ReportError>
     let interval = proof.saving.interval;
     let interval = interval.map(|[low, high]| format!("{} to {}", percent(low), percent(high)));
     context.insert("interval", &interval);
-    context.insert("verdict", proof.verdict.name());
     context.insert("energy_before", &joules(proof.energy_j[0]));
     context.insert("energy_after", &joules(proof.energy_j[1]));
     context.insert("cycle_before", &seconds(proof.cycle.means_s[0]));

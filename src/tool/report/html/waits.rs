@@ -67,6 +67,7 @@ pub fn waits_report(of: Waits<'_>, notes: &[String]) -> Result<String, ReportErr
     context.insert("unknown", &count(WaitKind::Unknown));
     let rows: Vec<WaitRow> = found.waits.iter().map(|wait| row(of, wait)).collect();
     context.insert("waits", &rows);
+    context.insert("experiments", &rows.iter().any(|row| row.experiment.is_some()));
     context.insert("ways", &ways(&found.shift, &found.waits));
     let signals: Vec<String> = found.signals.iter().map(signal_text).collect();
     context.insert("signals", &signals);
