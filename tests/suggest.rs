@@ -122,7 +122,9 @@ fn places_of_outputs_stay() {
 fn malformed_marks_of_a_free_order_are_named() {
     let begin = "! joulepath: free order\n";
     let end = "! JOULEPATH: END OF FREE ORDER\n";
-    let visits = "MoveJ pRound,v1000,z10,tGrip;\nMoveJ Offs(pB,0,0,nHigh),v1000,z10,tGrip;\n";
+    let first = "MoveJ pRound,v1000,z10,tGrip;\n";
+    let second = "MoveJ Offs(pB,0,0,nHigh),v1000,z10,tGrip;\n";
+    let visits = &format!("{first}{second}");
     let marked = |with: String| {
         let text = PROGRAM.replace(visits, &with);
         assert!(text != PROGRAM);
@@ -141,7 +143,7 @@ fn malformed_marks_of_a_free_order_are_named() {
         (format!("{begin}{begin}{visits}{end}"), "has not ended"),
         (format!("{begin}{end}{visits}"), "no statement"),
         (format!("{begin}reg1:=1;\n{visits}{end}"), "only have calls"),
-        (format!("{begin}IF TRUE THEN\n{visits}{end}ENDIF\n"), "different blocks"),
+        (format!("{begin}{first}IF TRUE THEN\n{second}{end}ENDIF\n"), "different blocks"),
     ] {
         let (notes, list) = marked(text);
         assert!(notes.contains(fault) && notes.contains("m.mod:"), "{fault}: {notes}");
@@ -155,13 +157,13 @@ fn a_free_order_does_the_same_work() {
     let text = |visits: &str| {
         let head = PROGRAM.split("PROC main").next().unwrap();
         format!(
-            "{head}VAR num n:=0;\nPROC Visit()\nMoveL Offs(pA,0,130*n,0),v300,fine,tGrip;\nSetDO doTest,1;\nENDPROC\n\
+            "{head}VAR num n:=0;\nPROC Visit()\nMoveL Offs(pA,0,55*n,0),v300,fine,tGrip;\nSetDO doTest,1;\nENDPROC\n\
              PROC Next(num by)\nn:=n+by;\nENDPROC\n\
              PROC main()\nMoveAbsJ jHome,v1000,fine,tGrip;\n! joulepath: free order\n{visits}\
              ! joulepath: end of free order\nMoveAbsJ jHome,v1000,fine,tGrip;\nENDPROC\nENDMODULE\n"
         )
     };
-    assert!(!suggests(&text("Visit;\nNext 4;\nVisit;\nNext -3;\nVisit;\n"), "order Visit; Visit;"));
+    assert!(!suggests(&text("Visit;\nNext 4;\nVisit;\nNext -3;\nVisit;\n"), "order "));
 }
 
 /// What an order, an acceleration or a configuration costs is found out, and the edit mends it.
@@ -192,8 +194,8 @@ fn marked_visits_get_their_best_order() {
     let text = |visits: &str| {
         let head = PROGRAM.split("PROC main").next().unwrap();
         format!(
-            "{head}PROC Visit(num n)\nMoveJ Offs(pA,0,130*n,100),v1000,z10,tGrip;\nMoveL Offs(pA,0,130*n,0),v300,fine,tGrip;\n\
-             PulseDO doTest;\nWaitTime 0.2;\nMoveL Offs(pA,0,130*n,100),v1000,z10,tGrip;\nENDPROC\n\
+            "{head}PROC Visit(num n)\nMoveJ Offs(pA,0,55*n,100),v1000,z10,tGrip;\nMoveL Offs(pA,0,55*n,0),v300,fine,tGrip;\n\
+             PulseDO doTest;\nWaitTime 0.2;\nMoveL Offs(pA,0,55*n,100),v1000,z10,tGrip;\nENDPROC\n\
              PROC main()\nMoveAbsJ jHome,v1000,fine,tGrip;\n{visits}MoveAbsJ jHome,v1000,fine,tGrip;\nENDPROC\nENDMODULE\n"
         )
     };
@@ -209,7 +211,9 @@ fn marked_visits_get_their_best_order() {
     let found = all.iter().find(is_order).unwrap();
     let energy = |order: &[i32]| {
         fs::write(folder.path().join("one.mod"), text(&visit(order))).unwrap();
-        number(&json(folder.path(), &["simulate", "one.mod"]), "/energy_j")
+        let simulated = json(folder.path(), &["simulate", "one.mod"]);
+        assert_eq!(simulated["unresolved"].to_string(), "[]");
+        number(&simulated, "/energy_j")
     };
     let mut least = f64::INFINITY;
     for a in bad {
