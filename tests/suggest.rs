@@ -163,7 +163,8 @@ fn a_free_order_does_the_same_work() {
              ! joulepath: end of free order\nMoveAbsJ jHome,v1000,fine,tGrip;\nENDPROC\nENDMODULE\n"
         )
     };
-    assert!(!suggests(&text("Visit;\nNext 4;\nVisit;\nNext -3;\nVisit;\n"), "order "));
+    let named = "order Visit; Next 4; Next -4; Visit; Visit;";
+    assert!(!suggests(&text("Visit;\nNext 4;\nVisit;\nNext -4;\nVisit;\n"), named));
 }
 
 /// What an order, an acceleration or a configuration costs is found out, and the edit mends it.
