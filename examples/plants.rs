@@ -4,6 +4,8 @@
 #![expect(clippy::unwrap_used, reason = "a failed set-up stops the example")]
 #![expect(clippy::print_stdout, reason = "an example prints")]
 
+#[path = "../tests/support/cells.rs"]
+mod cells;
 #[path = "../tests/plants/program.rs"]
 mod program;
 #[path = "../tests/plants/stations.rs"]
@@ -14,6 +16,7 @@ mod support;
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use cells::{Cell, cells};
 use joulepath::arm::robot::Model;
 use joulepath::examine::plant::{
     Campaign, Conditions, CycleTruth, Disturbance, Kind, Plant, Run, Script, Step, Trouble,
@@ -33,7 +36,7 @@ use joulepath::tool::report::slack::outcome;
 use joulepath::tool::retrofit::{Retrofit, Settings, Source, read_program, retrofit};
 use program::{retimed, script, standing};
 use rayon::prelude::*;
-use support::{irb1600, module_paths, read};
+use support::irb1600;
 
 /// Seed of the first plant; the tests use those below.
 const FIRST: u64 = 70_000;
@@ -57,33 +60,11 @@ fn main() {
     proofs(4 * count);
 }
 
-/// A program with its files and the levels of its inputs.
-struct Cell {
-    files: Vec<Source>,
-    levels: BTreeMap<String, f64>,
-}
-
-/// The programs of `fixtures/cells`, and the example of the README.
-fn cells() -> Vec<Cell> {
-    let readme = std::fs::read_to_string(Path::new("fixtures/cells/README.md")).unwrap();
-    let own = Cell { files: support::modules("pick_place"), levels: BTreeMap::new() };
-    readme.lines().filter_map(cell).chain([own]).filter(waits).collect()
-}
-
-/// A row: program, what it does, style, options of the command line.
-fn cell(row: &str) -> Option<Cell> {
-    let columns: Vec<&str> = row.split('|').map(str::trim).collect();
-    let [_, name, _, _, inputs, _] = columns.as_slice() else { return None };
-    let name = name.strip_prefix('`')?.strip_suffix('`')?;
-    let paths = match name.strip_suffix('/') {
-        Some(folder) => module_paths(&format!("cells/{folder}")),
-        None => vec![Path::new("fixtures/cells").join(format!("{name}.mod"))],
-    };
-    let levels = inputs.trim_matches('`').split("--assume ").filter_map(|option| {
-        let (signal, level) = option.trim().split_once('=')?;
-        Some((signal.to_lowercase(), level.parse().unwrap()))
-    });
-    Some(Cell { files: read(&paths), levels: levels.collect() })
+/// The programs of `fixtures/cells`, and the example of the README, as far as they wait for a signal.
+fn waiting_cells() -> Vec<Cell> {
+    let example = support::modules("pick_place");
+    let own = Cell { name: "pick_place".to_owned(), files: example, levels: BTreeMap::new() };
+    cells().into_iter().chain([own]).filter(waits).collect()
 }
 
 /// Whether the cycle waits for a signal.
@@ -93,12 +74,6 @@ fn waits(cell: &Cell) -> bool {
     simulation.events.iter().skip(simulation.repeats_from.unwrap_or(0)).any(|event| {
         matches!(&event.what, What::Wait(of) if of.wait.signal.is_some() && of.wait.duration.is_none())
     })
-}
-
-impl Cell {
-    fn options(&self) -> Options {
-        Options { levels: self.levels.clone(), ..Options::default() }
-    }
 }
 
 /// Another robot of the same type: friction within 15 %, base power within 10 %.
@@ -121,7 +96,7 @@ struct Used {
 }
 
 fn slack(count: u64) {
-    let cells = cells();
+    let cells = waiting_cells();
     let model = irb1600();
     let all = PLANTS_PER_USE * count;
     let drawn = (0..all).into_par_iter().map(|at| {
@@ -215,7 +190,7 @@ fn retrofitted(
     let options = Options { arrivals: planned.arrivals.clone(), ..options.clone() };
     let settings = Settings { options, ..Settings::default() };
     let result = retrofit(&cell.files, model, &settings, &|_, _| ()).unwrap();
-    assert!(result.verification.passed);
+    assert!(result.verification.passed, "{}", cell.name);
     Some((planned, result))
 }
 

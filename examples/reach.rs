@@ -3,24 +3,17 @@
 #![expect(clippy::unwrap_used, reason = "a failed set-up stops the example")]
 #![expect(clippy::print_stdout, reason = "an example prints")]
 
+#[path = "../tests/support/cells.rs"]
+mod cells;
 #[path = "../tests/support/mod.rs"]
 mod support;
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
 
-use joulepath::retime::motion::Options;
+use cells::{Cell, cells};
 use joulepath::tool::retrofit::{Figures, Retrofit, SegmentKind, Settings, retrofit};
 use rayon::prelude::*;
-use support::{irb1600, module_paths, read};
-
-const FOLDER: &str = "fixtures/cells";
-
-/// A program and the levels of its inputs.
-struct Cell {
-    paths: Vec<PathBuf>,
-    levels: BTreeMap<String, f64>,
-}
+use support::irb1600;
 
 fn main() {
     let cells = cells();
@@ -33,34 +26,11 @@ fn main() {
     }
 }
 
-/// The programs in the table of the README.
-fn cells() -> Vec<Cell> {
-    let readme = std::fs::read_to_string(Path::new(FOLDER).join("README.md")).unwrap();
-    readme.lines().filter_map(cell).collect()
-}
-
-/// A row: program, what it does, style, options of the command line.
-fn cell(row: &str) -> Option<Cell> {
-    let columns: Vec<&str> = row.split('|').map(str::trim).collect();
-    let [_, name, _, _, inputs, _] = columns.as_slice() else { return None };
-    let name = name.strip_prefix('`')?.strip_suffix('`')?;
-    let paths = match name.strip_suffix('/') {
-        Some(folder) => module_paths(&format!("cells/{folder}")),
-        None => vec![Path::new(FOLDER).join(format!("{name}.mod"))],
-    };
-    let levels = inputs.trim_matches('`').split("--assume ").filter_map(|option| {
-        let (signal, level) = option.trim().split_once('=')?;
-        Some((signal.to_lowercase(), level.parse().unwrap()))
-    });
-    Some(Cell { paths, levels: levels.collect() })
-}
-
 fn retrofitted(cell: &Cell, settings: &Settings) -> Retrofit {
-    let options = Options { levels: cell.levels.clone(), ..Options::default() };
-    let settings = Settings { options, ..settings.clone() };
-    let result = retrofit(&read(&cell.paths), &irb1600(), &settings, &|_, _| ());
-    let result = result.unwrap_or_else(|error| panic!("{:?}: {error}", cell.paths));
-    assert!(result.verification.passed, "{:?}", cell.paths);
+    let settings = Settings { options: cell.options(), ..settings.clone() };
+    let result = retrofit(&cell.files, &irb1600(), &settings, &|_, _| ());
+    let result = result.unwrap_or_else(|error| panic!("{}: {error}", cell.name));
+    assert!(result.verification.passed, "{}", cell.name);
     result
 }
 

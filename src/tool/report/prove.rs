@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use serde_json::{Value, json};
 
+use super::diagnose::quoted;
 use super::prove_words::{agrees, plan_sentence, remarks, sentence, side, terms};
 use super::table::{Align, table};
 use crate::tool::cell::prove::{Adjustment, Doubt, LeftOut, Plan, Proof, Stratum};
@@ -117,17 +118,12 @@ fn promised(proof: &Proof, command: &str) -> Option<Value> {
 
 /// The command that finds out why measurement and model differ.
 pub fn diagnose_command(before: &[String], after: &[String]) -> String {
-    let quoted = |paths: &[String]| {
-        let quoted = paths.iter().map(|path| {
-            let is_plain = |c: char| c.is_ascii_alphanumeric() || "/._-+".contains(c);
-            if path.chars().all(is_plain) { path.clone() } else { format!("'{path}'") }
-        });
-        quoted.collect::<Vec<_>>().join(" ")
-    };
+    let words =
+        |paths: &[String]| paths.iter().map(|path| quoted(path)).collect::<Vec<_>>().join(" ");
     format!(
         "joulepath diagnose --robot ROBOT --log {} --baseline {} --out better.toml",
-        quoted(after),
-        quoted(before)
+        words(after),
+        words(before)
     )
 }
 
