@@ -197,8 +197,8 @@ pub(super) enum Turned {
 }
 
 /// The mean courses of the power over a cycle, and the mean durations without foreign waits: other work has
-/// others. Each side
-/// has its cycles in the order of time; `turned`: a cycle may begin at another place on each side.
+/// others. Each side has its cycles in the order of time; `turned`: a cycle may begin at another place on
+/// each side.
 pub(super) fn other_work(
     courses: [&[&[f64]]; 2],
     duration: [f64; 2],
@@ -230,8 +230,8 @@ pub(super) fn other_work(
         )
     } else if longer.abs() > LONGER {
         format!(
-            "a cycle without its longer waits takes {:+.1} % of the time before: another product or process? No verdict: give logs of the \
-             same work, with columns part or payload",
+            "a cycle without its longer waits takes {:+.1} % of the time before: another product or process? No \
+             verdict: give logs of the same work, with columns part or payload",
             100.0 * longer
         )
     } else {
