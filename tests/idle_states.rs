@@ -141,7 +141,27 @@ fn the_curve_of_the_cycle_holds_today_and_the_retrofit() {
         let naps = points.iter().filter(|point| point["rest_state"] == "nap").count();
         assert_eq!(naps > 0, !config.is_empty(), "{curve}");
     }
-    assert_eq!(optimize("", &[]).get("cycle_curve"), None);
+    let without = optimize("", &[]);
+    assert!(without.get("cycle_curve").is_none() && without.get("spacings").is_none());
+}
+
+#[test]
+fn the_table_of_spacings_has_what_a_retrofit_with_each_spacing_saves() {
+    let result = optimize("", &["--input", "diPart=4", "--pareto", "2"]);
+    let rows = result["spacings"].as_array().unwrap();
+    assert!(
+        rows.windows(2).all(|pair| number(&pair[0], "/spacing_s") < number(&pair[1], "/spacing_s"))
+    );
+    for row in rows {
+        let spacing = number(row, "/spacing_s").to_string();
+        let own: &[&str] = if row["used"] == true { &[] } else { &["--spacing", &spacing] };
+        let alone = optimize("", &[&["--input", "diPart=4"], own].concat());
+        let [before, after] =
+            ["original", "optimized"].map(|side| number(&alone[side], "/energy_j"));
+        assert!((number(row, "/saved_j") - (before - after)).abs() < 1e-9, "{row}");
+    }
+    let saved = |row: usize| number(&rows[row], "/saved_j");
+    assert!(rows.len() == 5 && saved(0) > saved(4), "{rows:?}");
 }
 
 #[test]

@@ -157,6 +157,7 @@ fn small(path: &str) -> Small {
     let retrofit = Retrofit {
         lower_limits: Vec::new(),
         uncertainty: None,
+        spacings: Vec::new(),
         guard_instructions: 0,
         original: figures(&before),
         optimized: figures(&after),

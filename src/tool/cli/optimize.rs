@@ -68,8 +68,8 @@ pub(super) struct OptimizeArgs {
     #[arg(long, value_enum, default_value_t = EnergyArg::Electrical)]
     energy: EnergyArg,
 
-    /// Add the curves of least energy over time of the cycle and of each segment to the JSON and the
-    /// report, with so many points.
+    /// Add the curves of least energy over time of the cycle and of each segment (so many points), and
+    /// the saving over --spacing, to the JSON and the report.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=200), hide_default_value = true)]
     pareto: u16,
 

@@ -16,7 +16,7 @@ use crate::retime::optimize::check::Check;
 use crate::retime::optimize::energy_curve::TimeEnergy;
 use crate::tool::retrofit::{
     Figures, LowerLimits, OutputFile, OutputKind, Retrofit, Segment, SegmentKind, SignalKind,
-    SignalShift,
+    SignalShift, SpacingSaving,
 };
 
 /// The six energy parts, or nulls for a robot without dynamics.
@@ -207,7 +207,20 @@ pub fn retrofit(
     if !retrofit.whole_cycle.curve.is_empty() {
         value["cycle_curve"] = whole_cycle::curve_json(&retrofit.whole_cycle);
     }
+    if !retrofit.spacings.is_empty() {
+        value["spacings"] = retrofit.spacings.iter().map(spacing).collect();
+    }
     value
+}
+
+fn spacing(of: &SpacingSaving) -> Value {
+    json!({
+        "spacing_s": of.spacing_s,
+        "points": of.points,
+        "saved_j": of.saved_j,
+        "motion_saving_percent": of.motion_saving_percent,
+        "used": of.is_used,
+    })
 }
 
 fn lower_limits(lower: &LowerLimits) -> Value {

@@ -3,6 +3,7 @@
 use super::files::OutputFile;
 use super::padding::Padding;
 use super::signals::SignalShift;
+use super::spacing_table::SpacingSaving;
 use super::uncertainty::Uncertainty;
 use super::whole_cycle::WholeCycle;
 use crate::rapid::text::Span;
@@ -180,6 +181,8 @@ pub struct Retrofit {
     pub lower_limits: Vec<LowerLimits>,
     /// Energies and savings over plausible robots; `None` for a point estimate.
     pub uncertainty: Option<Uncertainty>,
+    /// Savings over the spacing of points; empty without curves.
+    pub spacings: Vec<SpacingSaving>,
     /// Maximum number of RAPID instructions of guards in a cycle.
     pub guard_instructions: usize,
     /// The original cycle.

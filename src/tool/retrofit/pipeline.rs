@@ -23,6 +23,7 @@ use super::rounds::verified;
 use super::settings::{Budget, Form, Objective, Settings};
 use super::sharing::{enforce_cycle_time, faster, streams, undo_costly_streams};
 use super::simulated::Simulated;
+use super::spacing_table::spacing_table;
 use super::speeds;
 use super::torque_demand::mean_robot;
 use crate::arm::robot::{Model, Use, ready};
@@ -36,6 +37,20 @@ use crate::retime::optimize::retime::PathUse;
 /// # Errors
 /// An error that prevents the whole retrofit; a piece that cannot be improved stays unchanged.
 pub fn retrofit(
+    files: &[Source],
+    model: &Model,
+    settings: &Settings,
+    progress: &(dyn Fn(usize, usize) + Sync),
+) -> Result<Retrofit, RetrofitError> {
+    let mut result = once(files, model, settings, progress)?;
+    if settings.pareto > 0 && settings.form == Form::Streams {
+        result.spacings = spacing_table(files, model, settings, &result);
+    }
+    Ok(result)
+}
+
+/// A retrofit without the table of spacings.
+pub(super) fn once(
     files: &[Source],
     model: &Model,
     settings: &Settings,

@@ -75,6 +75,7 @@ pub(super) fn results(job: Job<'_>, rewritten: Rewritten, leaves_path: bool) -> 
         notes,
         lower_limits,
         uncertainty,
+        spacings: Vec::new(),
         verification: rewritten.verification,
         signals: signals(&original.cycle.simulation, &simulated.simulation),
         guard_instructions: outputs.guards.iter().map(|guard| guard.instructions).sum(),

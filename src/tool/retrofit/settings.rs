@@ -77,7 +77,8 @@ pub struct Settings {
     /// Whether movements with inline targets may become streams: `ModPos` would change such a
     /// target only in the original branch of the guard.
     pub inline_targets: bool,
-    /// Number of points of the energy-time curves of the cycle and of each segment; 0 for no curve.
+    /// Number of points of the energy-time curves of the cycle and of each segment; 0 for no curve and
+    /// no table of spacings.
     pub pareto: usize,
     /// Lower-case names of `PERS` data that other tasks of the controller may write.
     pub written_elsewhere: BTreeSet<String>,

@@ -69,6 +69,7 @@ pub fn optimize_report(
     context.insert("plausible", &saving(retrofit));
     context.insert("notes", &retrofit.notes);
     context.insert("summary", &summary::summary(retrofit));
+    context.insert("spacings", &summary::spacings(retrofit));
     context.insert("segments", &segments::segments(retrofit, places));
     context.insert("energy_time", &energy_time::energy_time(retrofit, places));
     context.insert("cycle_curve", &cycle_curve::cycle_curve(&retrofit.whole_cycle));

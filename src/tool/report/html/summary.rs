@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::format::{fixed, joules, saved_percent, seconds};
 use crate::retime::energy::EnergyParts;
 use crate::tool::report::svg::Scale;
-use crate::tool::retrofit::{Retrofit, SegmentKind};
+use crate::tool::retrofit::{Retrofit, SegmentKind, SpacingSaving};
 
 /// Style class, name, explanation and value of a part.
 type PartOf = (&'static str, &'static str, &'static str, fn(&EnergyParts) -> f64);
@@ -70,6 +70,20 @@ pub(super) fn summary(retrofit: &Retrofit) -> Value {
         "rewritten": eligible.clone().filter(|s| s.rewritten).count(),
         "movements": eligible.count(),
     })
+}
+
+/// The savings over the spacing of points for the template.
+pub(super) fn spacings(retrofit: &Retrofit) -> Vec<Value> {
+    let row = |of: &SpacingSaving| {
+        json!({
+            "spacing": fixed(1e3 * of.spacing_s, 0),
+            "points": of.points,
+            "saved": joules(of.saved_j),
+            "motion_percent": fixed(of.motion_saving_percent, 1),
+            "is_used": of.is_used,
+        })
+    };
+    retrofit.spacings.iter().map(row).collect()
 }
 
 fn change(before: f64, after: f64, less: &str, more: &str) -> String {
