@@ -11,6 +11,7 @@ pub mod convex_curve;
 pub mod corridor;
 pub mod cost;
 pub mod cycle;
+pub mod eligibility;
 mod energy_cones;
 mod energy_costs;
 pub mod energy_curve;

@@ -15,8 +15,9 @@ use crate::rapid::ir::program::{Program, RoutineId};
 use crate::rapid::text::Span;
 use crate::retime::motion::Simulation;
 use crate::retime::motion::timeline::{Run, What};
+use crate::retime::optimize::eligibility::not_constant;
 use crate::retime::optimize::reason::Reason;
-use crate::retime::optimize::site::{Site, mark_joined, not_constant, sites};
+use crate::retime::optimize::site::{Site, mark_joined, sites};
 use crate::tool::emit;
 
 /// The sites of a program; sites and variants that cannot be streams have a reason.

@@ -12,6 +12,17 @@ pub(super) struct Cycle<'a> {
     pub(super) events: &'a [Event],
 }
 
+/// Where the time of a machine counts from in a cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Start {
+    /// Not from an event of the cycle.
+    Outside,
+    /// From the end of this event.
+    EndOf(usize),
+    /// The cycle lacks the event.
+    Unknown,
+}
+
 impl Cycle<'_> {
     /// Whether a statement stands at a recorded place.
     pub(super) fn is_at(&self, span: Span, file: &str, line: u32) -> bool {
@@ -30,53 +41,63 @@ impl Cycle<'_> {
         own.nth(occurrence).map(|(index, number, _)| (index, number))
     }
 
-    /// The event from which the slack of the wait at `wait` may be used up. `None` if nothing in the
-    /// cycle stands for it.
-    pub(super) fn anchor(&self, after: &After, wait: usize) -> Option<Anchor> {
-        // What happened in the cycle before, or outside, does not depend on this cycle's movements.
-        if after.before || after.event == EventEntry::Cycle {
-            return Some(Anchor::Cycle);
-        }
+    /// Where the time of a machine counts from: the last such event before the event `until`.
+    pub(super) fn start(&self, after: &After, until: usize) -> Start {
         let (file, line) = (after.file.as_deref(), after.line);
         let at =
             |span: Span| file.zip(line).is_some_and(|(file, line)| self.is_at(span, file, line));
-        let before = self.events[..wait].iter().enumerate().rev();
+        let before = self.events[..until].iter().enumerate().rev();
         let found = |is: &dyn Fn(&What) -> bool| {
             before.clone().find(|(_, event)| is(&event.what)).map(|(index, _)| index)
         };
+        let end_of = |is: &dyn Fn(&What) -> bool| found(is).map_or(Start::Unknown, Start::EndOf);
         match after.event {
-            EventEntry::Cycle => Some(Anchor::Cycle),
-            EventEntry::End => self
-                .standing(found(&|what| matches!(what, What::Wait(it) if at(it.wait.span)))?, wait),
-            EventEntry::Output => self
-                .standing(found(&|what| matches!(what, What::Output(it, _) if at(it.span)))?, wait),
+            EventEntry::Cycle => Start::Outside,
+            EventEntry::End => end_of(&|what| matches!(what, What::Wait(it) if at(it.wait.span))),
+            EventEntry::Output => {
+                end_of(&|what| matches!(what, What::Output(it, _) if at(it.span)))
+            }
             EventEntry::Signal => {
-                let signal = after.signal.as_deref()?;
+                let Some(signal) = after.signal.as_deref() else { return Start::Unknown };
                 let waits = |what: &What| {
                     matches!(what, What::Wait(it)
                         if it.wait.signal.as_ref().is_some_and(|own| own.eq_ignore_ascii_case(signal)))
                 };
                 // A signal for which the robot does not wait comes by itself.
-                found(&waits).map_or(Some(Anchor::Cycle), |index| self.standing(index, wait))
+                found(&waits).map_or(Start::Outside, Start::EndOf)
             }
             EventEntry::Start | EventEntry::Arrive => {
                 let moves = |what: &What| {
                     matches!(what, What::Run(run)
                         if run.moves.iter().any(|record| at(record.movement.span)))
                 };
-                let run = found(&moves)?;
+                let Some(run) = found(&moves) else { return Start::Unknown };
                 let begins = after.event == EventEntry::Start
                     && matches!(&self.events[run].what, What::Run(run)
                         if run.moves.first().is_some_and(|record| at(record.movement.span)));
                 let from = if begins { run.checked_sub(1) } else { Some(run + 1) };
-                from.map_or(Some(Anchor::Cycle), |from| self.standing(from, wait))
+                from.map_or(Start::Outside, Start::EndOf)
             }
+        }
+    }
+
+    /// The event from which the slack of the wait at `wait` may be used up. `None` if nothing in the
+    /// cycle stands for it.
+    pub(super) fn anchor(&self, after: &After, wait: usize) -> Option<Anchor> {
+        // What happened in the cycle before, or outside, does not depend on this cycle's movements.
+        if after.before {
+            return Some(Anchor::Cycle);
+        }
+        match self.start(after, wait) {
+            Start::Outside => Some(Anchor::Cycle),
+            Start::EndOf(event) => self.standing(event, wait),
+            Start::Unknown => None,
         }
     }
 
     /// The first wait or output at standstill from this event on, before the wait: what comes later
     /// leaves less time, never more.
-    fn standing(&self, from: usize, wait: usize) -> Option<Anchor> {
+    pub(super) fn standing(&self, from: usize, wait: usize) -> Option<Anchor> {
         let index = (from..wait).find(|index| {
             let event = &self.events[*index];
             matches!(event.what, What::Wait(_) | What::Output(..)) && !event.is_within_next_run()

@@ -1,6 +1,6 @@
 //! Arrivals for the waits of a simulated cycle, from recorded ones.
 
-use super::place::Cycle;
+use super::place::{Cycle, Start};
 use super::risk::{allowed, delays, longer_by, longer_cycles, needed};
 use crate::retime::motion::arrivals::{Anchor, Arrival, anchored};
 use crate::retime::motion::timeline::{Event, What};
@@ -132,7 +132,7 @@ pub fn plan(
             Some((index, anchor))
         })
         .collect();
-    keep_independent(&mut slack, &known, &mut notes);
+    keep_starts(&cycle, &mut slack, &known, &mut notes);
     let lists: Vec<Vec<f64>> =
         slack.iter().map(|(index, _)| lengths(known[*index].record)).collect();
     let longer = allowed(cycles, risk);
@@ -203,30 +203,39 @@ fn known<'a>(cycle: &Cycle<'_>, waits: &'a WaitsFile, way: &'a WayEntry) -> Vec<
     found.collect()
 }
 
-/// Of slacks whose machine runs since the cycle before, at most one is used up, and then no other: the
-/// robot would start that machine later.
-fn keep_independent(
+/// Where the slower movements of each slack begin: not before an event from which the time of another
+/// machine counts, if its wait comes afterwards, because the robot would start that machine later.
+fn keep_starts(
+    cycle: &Cycle<'_>,
     slack: &mut Vec<(usize, Anchor)>,
     known: &[Known<'_>],
     notes: &mut Vec<String>,
 ) {
-    let is_before =
-        |index: usize| known[index].entry.after.as_ref().is_some_and(|after| after.before);
-    let size = |index: usize| quantile(&lengths(known[index].record), 0.5);
-    if slack.len() < 2 || !slack.iter().any(|(index, _)| is_before(*index)) {
-        return;
-    }
-    let largest = slack.iter().copied().max_by(|a, b| size(a.0).total_cmp(&size(b.0)));
-    let all = slack.len();
-    match largest {
-        Some(largest) if is_before(largest.0) => *slack = vec![largest],
-        _ => slack.retain(|(index, _)| !is_before(*index)),
-    }
-    notes.push(format!(
-        "{} of {all} slacks are not used up: their machines are started in the cycle before, which the others would \
-         delay",
-        all - slack.len()
-    ));
+    let starts = |wait: usize| {
+        known.iter().filter(|it| it.entry.kind == KindEntry::Slack).filter_map(move |it| {
+            let after = it.entry.after.as_ref()?;
+            let until = if after.before { cycle.events.len() } else { it.event };
+            match cycle.start(after, until) {
+                Start::EndOf(at) if after.before || it.event > wait => Some(at),
+                _ => None,
+            }
+        })
+    };
+    slack.retain_mut(|(index, anchor)| {
+        let wait = known[*index].event;
+        let begin = anchored(cycle.events, *anchor);
+        let is_within = |at: &usize| begin.is_none_or(|begin| begin < *at) && *at < wait;
+        let Some(last) = starts(wait).filter(is_within).max() else { return true };
+        let later = cycle.standing(last, wait);
+        notes.push(format!(
+            "{}:{}: the slack is {}: the time of another machine counts from an event before, and the robot would \
+             start it later",
+            known[*index].record.file,
+            known[*index].record.line,
+            if later.is_some() { "used in a part of the way" } else { "not used up" }
+        ));
+        later.inspect(|later| *anchor = *later).is_some()
+    });
 }
 
 /// Time from the robot's coming to the signal, s, in each cycle.

@@ -6,6 +6,7 @@ use super::file::{
 use super::find::{Found, Wait};
 use super::reference::Kind;
 use super::samples::{Candidate, Sample};
+use super::spread::median;
 use super::verdict::{Reason, WaitKind};
 
 /// Decimals of times: what a controller's clock resolves.
@@ -129,14 +130,16 @@ fn way_entry(found: &Found, way: usize) -> WayEntry {
     // Where the visits of each cycle are.
     let mut visits: Vec<Vec<(&Wait, Visit<'_>)>> = vec![Vec::new(); shift.cycles.len()];
     for wait in &found.waits {
+        let starts: Vec<f64> =
+            wait.samples.samples.iter().map(|sample| shift.cycles[sample.cycle].start).collect();
+        let times = wait.after().map(|candidate| &candidate.times);
+        // Where the log lacks the event in a cycle, it counts as being at its usual place: a cycle that is
+        // left out because it was unusual would make the others look safer than they are.
+        let known = times.into_iter().flatten().zip(&starts);
+        let usual = median(known.filter_map(|(t, start)| Some((*t)? - start)));
         for (index, sample) in wait.samples.samples.iter().enumerate() {
-            let from = match wait.after() {
-                Some(candidate) => candidate.times[index],
-                None => Some(shift.cycles[sample.cycle].start),
-            };
-            if let Some(from) = from {
-                visits[sample.cycle].push((wait, (sample, from)));
-            }
+            let from = times.map_or(starts[index], |of| of[index].unwrap_or(starts[index] + usual));
+            visits[sample.cycle].push((wait, (sample, from)));
         }
     }
     for visits in &mut visits {

@@ -94,8 +94,7 @@ fn totals(found: &BTreeMap<Station, [Counts; 2]>) -> [Counts; 2] {
 /// Number of lines that each test draws: few, or as many as the variable `JOULEPATH_LINES` says, as for the
 /// rates of `docs/cell.md`.
 fn lines() -> u64 {
-    let stated = std::env::var("JOULEPATH_LINES").ok();
-    stated.and_then(|text| text.parse().ok()).unwrap_or(16)
+    option_env!("JOULEPATH_LINES").and_then(|text| text.parse().ok()).unwrap_or(16)
 }
 
 #[expect(clippy::print_stdout, reason = "the rates of the page, shown with --nocapture")]
