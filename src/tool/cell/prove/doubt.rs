@@ -3,6 +3,7 @@
 
 use super::blocks::{block_length, long_run_variance};
 use super::estimate::Estimate;
+use super::interval::NORMAL;
 use super::outliers::deviation;
 use super::periodic::correlation;
 use super::rest::{Level, is_gain};
@@ -68,8 +69,9 @@ pub(super) fn meter(rest: [&[f64]; 2], levels: [Option<Level>; 2], saving: f64) 
     if !is_seen || !is_gain(after / before, [level_0, level_1]) {
         return None;
     }
-    // The true change of the energy lies between the measured one and that of a meter with this error.
-    let shift = change * (1.0 - saving);
+    // The true change of the energy lies between the measured one and that of a meter with this error, which is
+    // known as well as the power at rest is.
+    let shift = (change + change.signum() * NORMAL * error) * (1.0 - saving);
     Some(Doubt {
         name: "meter",
         widens: [(-shift).max(0.0), shift.max(0.0)],

@@ -11,7 +11,7 @@ const SEED: u64 = 20_261_129;
 const LEVEL: f64 = 0.025;
 const BOUND: f64 = 0.05;
 /// Quantiles of the normal distribution at these levels.
-const NORMAL: f64 = 1.96;
+pub(super) const NORMAL: f64 = 1.96;
 /// How Student's quantile exceeds the normal one, times the degrees of freedom.
 const STUDENT: f64 = 2.4;
 /// What no meter repeats better than from one period to another, share.

@@ -131,20 +131,21 @@ impl Measured {
         }
     }
 
-    /// Fills in the power at rest and, without a log of events, the time at rest.
+    /// Fills in the power at rest and, without a log of events, the time at rest: the time by a level that both
+    /// sides may share, the power by the side's own one, because the band around a shared level would hide a
+    /// part of their difference.
     pub(super) fn rest(&mut self, level: Option<Level>, with_events: bool) {
         for (unit, (log, begin, end)) in self.units.iter_mut().zip(&self.places) {
-            let Some(level) = level else {
+            let (Some(level), Some(own)) = (level, self.level) else {
                 if !with_events {
                     unit.rest_s = 0.0;
                 }
                 continue;
             };
             let (series, windows) = &self.series[*log];
-            let (time, power) = level.within(series, windows, *begin, *end);
-            unit.rest_w = power;
+            unit.rest_w = own.within(series, windows, *begin, *end).1;
             if !with_events {
-                unit.rest_s = time;
+                unit.rest_s = level.within(series, windows, *begin, *end).0;
             }
         }
     }
