@@ -3,7 +3,6 @@
 use super::files::OutputFile;
 use super::padding::Padding;
 use super::signals::SignalShift;
-use super::spacing_table::SpacingSaving;
 use super::uncertainty::Uncertainty;
 use super::whole_cycle::WholeCycle;
 use crate::rapid::text::Span;
@@ -152,6 +151,21 @@ impl Verification {
     pub(super) fn broken(&self) -> Option<&str> {
         self.checks.iter().find(|(_, held)| !held).map(|(what, _)| what.as_str())
     }
+}
+
+/// The saving with one spacing of the points of streams.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpacingSaving {
+    /// Least time between two points, s.
+    pub spacing_s: f64,
+    /// Points of all streams.
+    pub points: usize,
+    /// Saved energy of the cycle, J.
+    pub saved_j: f64,
+    /// Saved share of the motion energy, %.
+    pub motion_saving_percent: f64,
+    /// Whether it is the spacing of this retrofit.
+    pub is_used: bool,
 }
 
 /// A retrofit.

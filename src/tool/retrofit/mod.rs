@@ -61,7 +61,9 @@ pub use cell::Cell;
 pub use elsewhere::{declared_in, written_in};
 pub use error::RetrofitError;
 pub(in crate::tool) use figures::INSTRUCTION_MS;
-pub use figures::{Figures, LowerLimits, Retrofit, Segment, SegmentKind, Verification};
+pub use figures::{
+    Figures, LowerLimits, Retrofit, Segment, SegmentKind, SpacingSaving, Verification,
+};
 pub use files::{OutputFile, OutputKind, Source, read_again};
 pub(in crate::tool) use files::{file_and_line, with_edits};
 pub(in crate::tool) use freed::comments;
@@ -72,7 +74,6 @@ pub use read::read_program;
 pub use settings::{Budget, CLOSEST_S, Form, Objective, SPACING_S, Settings};
 pub use signals::{SignalKind, SignalShift};
 pub(in crate::tool) use simulated::Simulated;
-pub use spacing_table::SpacingSaving;
 pub use uncertainty::Uncertainty;
 pub(in crate::tool) use verify::{parses, run_again};
 pub(in crate::tool) use verify_speeds::largest_share;

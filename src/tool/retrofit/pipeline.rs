@@ -44,13 +44,14 @@ pub fn retrofit(
 ) -> Result<Retrofit, RetrofitError> {
     let mut result = once(files, model, settings, progress)?;
     if settings.pareto > 0 && settings.form == Form::Streams {
-        result.spacings = spacing_table(files, model, settings, &result);
+        let with = |other: &Settings| once(files, model, other, &|_, _| ()).ok();
+        result.spacings = spacing_table(settings, &result, &with);
     }
     Ok(result)
 }
 
 /// A retrofit without the table of spacings.
-pub(super) fn once(
+fn once(
     files: &[Source],
     model: &Model,
     settings: &Settings,

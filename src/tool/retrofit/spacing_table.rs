@@ -1,42 +1,23 @@
 //! What the spacing of the points of streams is worth: the retrofit with other spacings.
 
-use super::figures::Retrofit;
-use super::files::Source;
-use super::pipeline::once;
+use super::figures::{Retrofit, SpacingSaving};
 use super::settings::Settings;
 use super::simulated::TIME_TOLERANCE;
-use crate::arm::robot::Model;
 
 /// Spacings of the table, s.
 const SPACINGS_S: [f64; 5] = [0.03, 0.05, 0.075, 0.1, 0.15];
 
-/// The saving with one spacing.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SpacingSaving {
-    /// Least time between two points, s.
-    pub spacing_s: f64,
-    /// Points of all streams.
-    pub points: usize,
-    /// Saved energy of the cycle, J.
-    pub saved_j: f64,
-    /// Saved share of the motion energy, %.
-    pub motion_saving_percent: f64,
-    /// Whether it is the spacing of this retrofit.
-    pub is_used: bool,
-}
-
-/// The savings with other spacings, and of `result` with its own, by spacing. A spacing with which
-/// there is no retrofit is left out.
+/// The savings with other spacings, and of `result` with its own, by spacing. `retrofitted` makes a retrofit
+/// with other settings; a spacing with which there is none is left out.
 pub(super) fn spacing_table(
-    files: &[Source],
-    model: &Model,
     settings: &Settings,
     result: &Retrofit,
+    retrofitted: &dyn Fn(&Settings) -> Option<Retrofit>,
 ) -> Vec<SpacingSaving> {
     let is_used = |spacing: f64| (spacing - settings.spacing_s).abs() < TIME_TOLERANCE;
     let other = |spacing_s: f64| {
         let with = Settings { spacing_s, closest_s: spacing_s, pareto: 0, ..settings.clone() };
-        Some(row(spacing_s, &once(files, model, &with, &|_, _| ()).ok()?, false))
+        Some(row(spacing_s, &retrofitted(&with)?, false))
     };
     let others = SPACINGS_S.into_iter().filter(|spacing| !is_used(*spacing));
     let mut table: Vec<SpacingSaving> = others.filter_map(other).collect();

@@ -130,15 +130,20 @@ fn way_entry(found: &Found, way: usize) -> WayEntry {
     // Where the visits of each cycle are.
     let mut visits: Vec<Vec<(&Wait, Visit<'_>)>> = vec![Vec::new(); shift.cycles.len()];
     for wait in &found.waits {
-        let starts: Vec<f64> =
-            wait.samples.samples.iter().map(|sample| shift.cycles[sample.cycle].start).collect();
-        let times = wait.after().map(|candidate| &candidate.times);
+        let start = |sample: &Sample| shift.cycles[sample.cycle].start;
+        let pairs = |of: &Candidate| {
+            let all = wait.samples.samples.iter().zip(of.times.clone());
+            all.filter_map(|(sample, t)| Some(t? - start(sample))).collect::<Vec<f64>>()
+        };
         // Where the log lacks the event in a cycle, it counts as being at its usual place: a cycle that is
         // left out because it was unusual would make the others look safer than they are.
-        let known = times.into_iter().flatten().zip(&starts);
-        let usual = median(known.filter_map(|(t, start)| Some((*t)? - start)));
+        let usual = wait.after().map(|of| median(pairs(of)));
         for (index, sample) in wait.samples.samples.iter().enumerate() {
-            let from = times.map_or(starts[index], |of| of[index].unwrap_or(starts[index] + usual));
+            let from = match wait.after() {
+                None => start(sample),
+                Some(of) if of.reference.before && !shift.follows[sample.cycle] => continue,
+                Some(of) => of.times[index].unwrap_or(start(sample) + usual.unwrap_or_default()),
+            };
             visits[sample.cycle].push((wait, (sample, from)));
         }
     }
