@@ -72,7 +72,7 @@ pub fn prove(before: &Side, after: &Side, settings: Settings) -> Result<Proof, P
     })?;
     let is_enough = sizes.iter().all(|n| *n >= FEWEST);
     let uncertain = is_enough.then(|| uncertainty(slices, names.len(), prior, &of));
-    let doubts = doubts(&of, &units, apart(sides, &units), turned, levels);
+    let doubts = doubts(&of, &units, apart(sides, &units), turned);
     let statistical = uncertain.as_ref().map(|of| of.interval);
     let interval = statistical.map(|interval| widened(interval, &doubts));
     let long_run = uncertain.as_ref().map_or_else(
@@ -247,10 +247,9 @@ fn doubts(
     units: &[Vec<(usize, Unit)>; 2],
     apart: f64,
     turned: Turned,
-    levels: [Option<Level>; 2],
 ) -> Vec<Doubt> {
-    let rest = [0, 1].map(|side: usize| {
-        units[side].iter().filter_map(|(_, unit)| unit.rest_w).collect::<Vec<f64>>()
+    let floor = [0, 1].map(|side: usize| {
+        units[side].iter().filter_map(|(_, unit)| unit.floor_w).collect::<Vec<f64>>()
     });
     let times =
         [0, 1].map(|side: usize| units[side].iter().map(|(_, unit)| unit.t).collect::<Vec<f64>>());
@@ -258,7 +257,7 @@ fn doubts(
         units[side].iter().map(|(_, unit)| unit.course.as_slice()).collect::<Vec<_>>()
     });
     let found = [
-        meter([&rest[0], &rest[1]], levels, of.saving),
+        meter([&floor[0], &floor[1]], of.saving),
         drift(of, [&times[0], &times[1]], apart),
         step(&of.residual[0], 0, of.saving),
         step(&of.residual[1], 1, of.saving),

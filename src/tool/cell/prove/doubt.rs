@@ -6,7 +6,6 @@ use super::estimate::Estimate;
 use super::interval::NORMAL;
 use super::outliers::deviation;
 use super::periodic::correlation;
-use super::rest::{Level, is_gain};
 
 /// A reason to widen the interval.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,9 +20,10 @@ pub struct Doubt {
     pub text: String,
 }
 
-/// Standard errors beyond which a level or a step is taken as seen.
-const SEEN: f64 = 3.0;
+/// Standard errors beyond which a step is taken as seen.
 const STEP: f64 = 4.0;
+/// The same for the meter: what is not seen makes a saving of nothing.
+const METER: f64 = 2.0;
 /// The same for a drift, which also harms where it is not seen.
 const DRIFT: f64 = 2.5;
 /// Least change of the power at rest, share: waiting at another pose changes it by as much.
@@ -55,29 +55,27 @@ fn mean_and_error(x: &[f64]) -> [f64; 2] {
     [mean, (long_run_variance(&left, block_length(&left)) / n).sqrt()]
 }
 
-/// The power at rest of the cycles of both sides, W: a meter with another gain shows another one, and another
-/// floor of the power.
-pub(super) fn meter(rest: [&[f64]; 2], levels: [Option<Level>; 2], saving: f64) -> Option<Doubt> {
-    let [Some(level_0), Some(level_1)] = levels else { return None };
-    if rest.iter().any(|x| x.len() < 3) {
+/// The lowest power that lasts in the cycles of both sides, W: a meter with another gain shows another one. The
+/// movements of a retrofit do not change it.
+pub(super) fn meter(floor: [&[f64]; 2], saving: f64) -> Option<Doubt> {
+    if floor.iter().any(|x| x.len() < 3) {
         return None;
     }
-    let [[before, error_0], [after, error_1]] = rest.map(mean_and_error);
+    let [[before, error_0], [after, error_1]] = floor.map(mean_and_error);
     let change = after / before - 1.0;
     let error = error_0.hypot(error_1) / before;
-    let is_seen = change.abs() >= LEAST && change.abs() >= SEEN * error;
-    if !is_seen || !is_gain(after / before, [level_0, level_1]) {
+    if change.abs() < LEAST || change.abs() < METER * error {
         return None;
     }
     // The true change of the energy lies between the measured one and that of a meter with this error, which is
-    // known as well as the power at rest is.
+    // known as well as the power is.
     let shift = (change + change.signum() * NORMAL * error) * (1.0 - saving);
     Some(Doubt {
         name: "meter",
         widens: [(-shift).max(0.0), shift.max(0.0)],
         withholds: false,
         text: format!(
-            "the power at rest is {before:.1} W before and {after:.1} W after ({:+.2} %, standard error \
+            "the lowest power that lasts is {before:.1} W before and {after:.1} W after ({:+.2} %, standard error \
              {:.2} %): the meter may have changed by as much, and the interval covers that; if the retrofit \
              itself lowers the power at rest, show it by a measurement with brakes and pose as before",
             100.0 * change,

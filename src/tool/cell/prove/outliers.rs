@@ -23,18 +23,25 @@ pub(super) fn kept(
             let units = sides[side].iter().filter(|(own, _)| *own == stratum);
             units.map(|(_, unit)| value(unit)).collect()
         };
-        // Both sides have one range of durations, but a retrofit changes the energy.
-        let both: Vec<f64> =
-            [0, 1].iter().flat_map(|side| of(*side, |unit| unit.duration_s)).collect();
-        let durations = range(&both, DURATION);
+        // Both sides have one range of durations, but a retrofit changes the energy. Beside waits of any length
+        // a stop shows only in the time without them.
+        let times: [fn(&Unit) -> f64; 2] =
+            [|unit| unit.duration_s, |unit| unit.duration_s - unit.rest_s];
+        let ranges = times.map(|time| {
+            let both: Vec<f64> = [0, 1].iter().flat_map(|side| of(*side, time)).collect();
+            range(&both, DURATION)
+        });
         for side in 0..2 {
             let energies = range(&of(side, |unit| unit.energy_j), ENERGY);
             for (keep, (_, unit)) in
                 keep[side].iter_mut().zip(&sides[side]).filter(|(_, (own, _))| *own == stratum)
             {
-                let why = if unit.duration_s > durations[1] {
+                let is = |outside: fn(f64, [f64; 2]) -> bool| {
+                    times.iter().zip(ranges).any(|(time, range)| outside(time(unit), range))
+                };
+                let why = if is(|time, range| time > range[1]) {
                     0
-                } else if unit.duration_s < durations[0] {
+                } else if is(|time, range| time < range[0]) {
                     1
                 } else if !(energies[0]..=energies[1]).contains(&unit.energy_j) {
                     2

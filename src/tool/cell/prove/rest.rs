@@ -1,6 +1,8 @@
 //! The power at rest: the level of the windows in which the power stays the same. It is what waiting
 //! costs, and it shows whether the meter has changed between the sides.
 
+use std::ops::Range;
+
 use super::series::Series;
 
 /// Length of a window, s, and its least number of rows.
@@ -21,6 +23,8 @@ const WINDOWS: usize = 5;
 /// as the power at rest; this share of that at least, because both are noisy.
 const FLOOR: f64 = 0.05;
 const CONFIRMED: f64 = 0.5;
+/// Least number of still windows of a cycle.
+const STILL: usize = 8;
 
 /// The power of a window; one begins at each row.
 #[derive(Clone, Copy, Debug)]
@@ -107,6 +111,15 @@ impl Level {
     /// Whether the robot rests in a window.
     fn has(&self, window: &Window) -> bool {
         window.sd <= self.sd && (window.mean - self.power_w).abs() <= self.band
+    }
+
+    /// The lowest power that lasts between two times, W: a quantile of the still windows.
+    pub(super) fn floor_within(&self, windows: &[Window], rows: Range<usize>) -> Option<f64> {
+        let begin = windows.partition_point(|w| w.row < rows.start);
+        let inside = windows[begin..].iter().take_while(|w| w.row + w.rows <= rows.end);
+        let still = inside.filter(|w| w.sd <= self.sd && w.mean > 0.0);
+        let mut means: Vec<f64> = still.map(|w| w.mean).collect();
+        if means.len() < STILL { None } else { quantile(&mut means, FLOOR) }
     }
 
     /// Time at rest between two times \[s\], and the mean power there \[W\]: all rows of windows at rest.

@@ -49,6 +49,8 @@ pub(super) struct Unit {
     pub(super) rest_s: f64,
     /// Mean power while it waits, W.
     pub(super) rest_w: Option<f64>,
+    /// Lowest power that lasts, W.
+    pub(super) floor_w: Option<f64>,
     /// Mean temperature, °C.
     pub(super) temperature: Option<f64>,
     /// What it makes.

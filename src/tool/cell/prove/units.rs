@@ -144,6 +144,8 @@ impl Measured {
             };
             let (series, windows) = &self.series[*log];
             unit.rest_w = own.within(series, windows, *begin, *end).1;
+            let [first, last] = [*begin, *end].map(|at| series.t.partition_point(|t| *t < at));
+            unit.floor_w = own.floor_within(windows, first..last);
             if !with_events {
                 unit.rest_s = level.within(series, windows, *begin, *end).0;
             }
@@ -212,6 +214,7 @@ fn unit(of: &PowerLog, series: &Series, span: &Span, offset: f64) -> Unit {
         duration_s: lasts,
         rest_s: recorded.map_or(0.0, |cycle| cycle.visits.iter().filter_map(Visit::length).sum()),
         rest_w: None,
+        floor_w: None,
         temperature: column(Channel::Temperature(0)).map(mean),
         kind: Kind {
             part,
