@@ -155,7 +155,7 @@ fn used(cell: &Cell, model: &Model, seed: u64) -> Option<Used> {
     let (after, entry) = read_program(&files, "main").unwrap();
     let arrivals = Options { arrivals: planned.arrivals.clone(), ..options };
     let after = simulate(&after, entry, &robot, &arrivals);
-    let new = retimed(&old, &script(&robot, &files, &after, power));
+    let new = retimed(&old, &script(&robot, &files, &after, power))?;
     let other = plant.run(&old, CYCLES, seed + 1);
     let changed = [plant.run(&new, CYCLES, seed), plant.run(&new, CYCLES, seed + 1)];
     let days = [(&recorded, &changed[0]), (&other, &changed[1])];
@@ -196,7 +196,8 @@ fn retrofitted(
 
 /// The emitted program.
 fn emitted(result: &Retrofit) -> Vec<Source> {
-    let is_module = |path: &str| Path::new(path).extension().is_some_and(|end| end == "mod");
+    let is_module =
+        |path: &str| Path::new(path).extension().is_some_and(|end| end == "mod" || end == "sys");
     let files = result.outputs.iter().filter(|file| is_module(&file.path));
     let file = |(index, file): (usize, &joulepath::tool::retrofit::OutputFile)| {
         let id = joulepath::rapid::text::FileId(index as u32);

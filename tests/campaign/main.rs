@@ -109,7 +109,7 @@ fn the_example_goes_from_its_first_log_to_a_proof() {
         serde_json::from_slice(&fs::read(campaign.join("optimized.json")).unwrap()).unwrap();
     assert!(!optimized["waits"]["used"].as_array().unwrap().is_empty(), "{}", optimized["waits"]);
 
-    let new = retimed(&original, &steps(&model, &program(&campaign.join("optimized"))));
+    let new = retimed(&original, &steps(&model, &program(&campaign.join("optimized")))).unwrap();
     shift(&plant, &new, 1, &campaign.join("recorded-after.json"), &campaign.join("logs/after"));
     let proved = call(&[]);
     assert_eq!(proved["finished"], true, "{proved}");

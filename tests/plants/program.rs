@@ -68,11 +68,14 @@ pub(crate) fn script(
     Script::single(steps.collect())
 }
 
-/// The steps of the original with the durations and energies of another program's movements.
-pub(crate) fn retimed(original: &Script, other: &Script) -> Script {
+/// The steps of the original with the durations and energies of another program's movements. `None` if it has
+/// more or fewer: a wait reached its time limit, which the plant does not simulate.
+pub(crate) fn retimed(original: &Script, other: &Script) -> Option<Script> {
     let mut changed = original.clone();
     let new: Vec<(f64, f64)> = moves(other);
-    assert_eq!(moves(original).len(), new.len(), "a movement more or less");
+    if moves(original).len() != new.len() {
+        return None;
+    }
     let mut new = new.into_iter();
     for step in &mut changed.variants[0].steps {
         if let Step::Move { duration_s, energy_j, .. } = step
@@ -81,7 +84,7 @@ pub(crate) fn retimed(original: &Script, other: &Script) -> Script {
             (*duration_s, *energy_j) = of;
         }
     }
-    changed
+    Some(changed)
 }
 
 fn moves(script: &Script) -> Vec<(f64, f64)> {
