@@ -8,6 +8,7 @@ mod campaign;
 mod choice;
 mod common;
 mod diagnose;
+mod diff;
 mod excite;
 mod generate;
 mod identify;
@@ -57,6 +58,7 @@ struct Cli {
 enum Command {
     Parse(parse::ParseArgs),
     Lint(Box<lint::LintArgs>),
+    Diff(Box<diff::DiffArgs>),
     Rule(rule::RuleArgs),
     Simulate(simulate::SimulateArgs),
     #[command(alias = "optimise")]
@@ -87,6 +89,7 @@ pub fn command_line() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Parse(args) => parse::run(&args),
         Command::Lint(args) => lint::run(&args),
+        Command::Diff(args) => diff::run(&args),
         Command::Rule(args) => rule::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Optimize(args) => optimize::run(&args),
