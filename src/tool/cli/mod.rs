@@ -10,6 +10,7 @@ mod common;
 mod diagnose;
 mod diff;
 mod excite;
+mod format;
 mod generate;
 mod identify;
 mod input;
@@ -59,6 +60,7 @@ enum Command {
     Parse(parse::ParseArgs),
     Lint(Box<lint::LintArgs>),
     Diff(Box<diff::DiffArgs>),
+    Format(format::FormatArgs),
     Rule(rule::RuleArgs),
     Simulate(simulate::SimulateArgs),
     #[command(alias = "optimise")]
@@ -90,6 +92,7 @@ pub fn command_line() -> ExitCode {
         Command::Parse(args) => parse::run(&args),
         Command::Lint(args) => lint::run(&args),
         Command::Diff(args) => diff::run(&args),
+        Command::Format(args) => format::run(&args),
         Command::Rule(args) => rule::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Optimize(args) => optimize::run(&args),
