@@ -14,7 +14,7 @@ use rust_source::tokens::tokens;
 const MIN_TERMS: usize = 40;
 
 /// Pages for users and contributors.
-const PAGES: [&str; 20] = [
+const PAGES: [&str; 21] = [
     "README.md",
     "CONTRIBUTING.md",
     "docs/architecture.md",
@@ -24,6 +24,7 @@ const PAGES: [&str; 20] = [
     "docs/controller.md",
     "docs/effects.md",
     "docs/energy.md",
+    "docs/format.md",
     "docs/gap.md",
     "docs/glossary.md",
     "docs/identification.md",
