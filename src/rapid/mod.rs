@@ -4,12 +4,15 @@
 //! - [`syntax`]: a lexer and parser that never fail and lose no byte;
 //! - [`diagnostics`]: messages with their place in the source;
 //! - [`builtins`]: the table of RAPID's instructions, functions, types and predefined data;
+//! - [`names`]: what each identifier of a program names;
 //! - [`ir`]: modules, symbols, values, and the execution to movements, waits and outputs.
 //!
 //! It uses no other wing: it knows no robot.
 
 pub mod builtins;
+pub mod check;
 pub mod diagnostics;
 pub mod ir;
+pub mod names;
 pub mod syntax;
 pub mod text;

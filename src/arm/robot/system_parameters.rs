@@ -3,7 +3,7 @@
 //! Sections begin with `NAME:` and end with `#`; an entry is a list of `-key value`, where a
 //! flag has no value and `\` at the end of a line continues it.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// One entry: values by lower-case key, each with its line; the value of a flag is empty.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -72,6 +72,15 @@ impl Entry {
             }
         }
     }
+}
+
+/// The names of the entries of all sections.
+pub fn names(text: &str) -> Vec<String> {
+    let is_section = |line: &&str| !line.starts_with(['-', ' ', '\t']);
+    let lines = text.lines().filter(is_section).filter_map(|line| line.trim_end().strip_suffix(':'));
+    let sections: BTreeSet<String> = lines.map(str::to_lowercase).collect();
+    let entries = sections.iter().flat_map(|name| section(text, name));
+    entries.filter_map(|entry| entry.get("name").cloned()).collect()
 }
 
 /// The entries of a section; its name is not case-sensitive.

@@ -7,10 +7,12 @@
 
 mod communication;
 mod data;
+mod declarations;
 mod function;
 mod functions;
 mod index;
 mod instruction;
+mod known;
 mod movements;
 mod parameter;
 mod processes;
@@ -24,6 +26,7 @@ mod types;
 pub use data::{
     Cause, Literal, Predefined, error, is_controller_specific, predefined, speeds, zones,
 };
+pub use declarations::DECLARATIONS;
 pub use function::{Function, Source};
 #[cfg(test)]
 pub(in crate::rapid) use functions::FUNCTIONS;
@@ -31,5 +34,6 @@ pub use index::{function, instruction, is_movement, is_of_move_family, may_write
 pub use instruction::{
     Count, Effect, Instruction, Level, MoveForm, MoveKind, MoveSignature, Setting, Wait,
 };
+pub use known::{is_known, routine_names};
 pub use parameter::ArgumentPlace;
 pub use types::{DataType, SignalKind, data_type};

@@ -187,6 +187,16 @@ fn block<'t>(text: &'t str, name: &str) -> impl Iterator<Item = &'t str> {
         .filter(|line| !line.is_empty())
 }
 
+/// The files in the module folders of a task, and of the modules that all tasks share.
+pub(super) fn modules(root: &Path, task: &str) -> Vec<PathBuf> {
+    let folders = [task, SHARED].into_iter().flat_map(|task| {
+        let task = child(root, "RAPID").and_then(|rapid| child(&rapid, task));
+        MODULE_FOLDERS.iter().filter_map(move |name| child(task.as_deref()?, name))
+    });
+    let entries = folders.filter_map(|folder| fs::read_dir(folder).ok()).flatten();
+    entries.filter_map(Result::ok).map(|entry| entry.path()).collect()
+}
+
 fn task_folders(root: &Path) -> Vec<String> {
     let Some(rapid) = child(root, "RAPID") else { return Vec::new() };
     let mut folders: Vec<String> = fs::read_dir(rapid)

@@ -5,6 +5,7 @@ mod backup;
 mod blind;
 mod calibrate;
 mod campaign;
+mod check;
 mod choice;
 mod common;
 mod diagnose;
@@ -56,6 +57,7 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Parse(parse::ParseArgs),
+    Check(check::CheckArgs),
     Lint(Box<lint::LintArgs>),
     Rule(rule::RuleArgs),
     Simulate(simulate::SimulateArgs),
@@ -86,6 +88,7 @@ enum Command {
 pub fn command_line() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Parse(args) => parse::run(&args),
+        Command::Check(args) => check::run(&args),
         Command::Lint(args) => lint::run(&args),
         Command::Rule(args) => rule::run(&args),
         Command::Simulate(args) => simulate::run(&args),

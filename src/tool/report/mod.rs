@@ -2,6 +2,7 @@
 
 pub mod calibrate;
 pub mod campaign;
+pub mod check;
 pub mod diagnose;
 pub mod html;
 pub mod identify;
