@@ -41,6 +41,8 @@ const WINGS: [Wing; 7] = [
             room("syntax", &["text"]),
             room("diagnostics", &["text"]),
             room("builtins", &[]),
+            room("names", &["text", "syntax", "builtins"]),
+            room("check", &["text", "syntax", "diagnostics", "builtins", "names"]),
             room("ir", &["text", "syntax", "builtins"]),
         ],
     ),

@@ -77,7 +77,8 @@ impl Entry {
 /// The names of the entries of all sections.
 pub fn names(text: &str) -> Vec<String> {
     let is_section = |line: &&str| !line.starts_with(['-', ' ', '\t']);
-    let lines = text.lines().filter(is_section).filter_map(|line| line.trim_end().strip_suffix(':'));
+    let lines =
+        text.lines().filter(is_section).filter_map(|line| line.trim_end().strip_suffix(':'));
     let sections: BTreeSet<String> = lines.map(str::to_lowercase).collect();
     let entries = sections.iter().flat_map(|name| section(text, name));
     entries.filter_map(|entry| entry.get("name").cloned()).collect()

@@ -6,9 +6,9 @@
 use std::collections::HashSet;
 use std::sync::LazyLock;
 
+use super::data::{error, predefined};
 use super::functions::FUNCTIONS;
 use super::index::{INSTRUCTIONS, function, instruction};
-use super::data::predefined;
 
 /// Names, by topic.
 const NAMES: &[&str] = &[
@@ -87,16 +87,48 @@ const NAMES: &[&str] = &[
     "USINT UINT UDINT ULINT SINT INT DINT LINT OPTIMAL_CYCLE_TIME_MODE LOW_SPEED_ACCURACY_MODE",
     "LOW_SPEED_STIFF_MODE ACCURACY_MODE TRIGG_MODE1 TRIGG_MODE2 TRIGG_MODE3 TOOL_LOAD_ID",
     "PAY_LOAD_ID IRBP_K IRBP_L IRBP_C IRBP_C_INDEX IRBP_T IRBP_R IRBP_A IRBP_B IRBP_D MASS_KNOWN",
-    "MASS_WITH_AX3 ARCWELD_ERR SPOTWELD_ERR PAINT_ERR PICKWARE_ERR",
+    "MASS_WITH_AX3 C_MOTSET C_PROGDISP ARCWELD_ERR SPOTWELD_ERR PAINT_ERR PICKWARE_ERR",
 ];
 
 /// Starts of the names of constants: error numbers, states and modes of options.
 const CONSTANTS: &[&str] = &[
-    "ALL_DOMAINS", "AW_", "BUSSTATE_", "CAP_", "CORR_", "CSS_", "CT_", "EE_", "EGM_", "EIO_DOMAIN",
-    "ERR_", "FC_", "GAP_", "IOBUS_", "IOUNIT_", "LTAPP__", "MMC_DOMAIN", "MOC_DOMAIN", "MPM_",
-    "OP_", "PM_", "PROC_DOMAIN", "ROB_LM1_LOAD_VAL", "ROB_LOAD_VAL", "ROB_NOT_LOAD_VAL", "SEN_",
-    "SIGORIG_", "SIO_DOMAIN", "STATE_", "SYS_DOMAIN", "SYS_ERR_", "TC_ERR_", "TSP_", "TUNE_", "btn",
-    "disk", "usbdisk",
+    "ALL_DOMAINS",
+    "AW_",
+    "BUSSTATE_",
+    "CAP_",
+    "CORR_",
+    "CSS_",
+    "CT_",
+    "EE_",
+    "EGM_",
+    "EIO_DOMAIN",
+    "ERR_",
+    "FC_",
+    "GAP_",
+    "IOBUS_",
+    "IOUNIT_",
+    "LTAPP__",
+    "MMC_DOMAIN",
+    "MOC_DOMAIN",
+    "MPM_",
+    "OP_",
+    "PM_",
+    "PROC_DOMAIN",
+    "ROB_LM1_LOAD_VAL",
+    "ROB_LOAD_VAL",
+    "ROB_NOT_LOAD_VAL",
+    "SEN_",
+    "SIGORIG_",
+    "SIO_DOMAIN",
+    "STATE_",
+    "SYS_DOMAIN",
+    "SYS_ERR_",
+    "TC_ERR_",
+    "TSP_",
+    "TUNE_",
+    "btn",
+    "disk",
+    "usbdisk",
 ];
 
 static BY_NAME: LazyLock<HashSet<String>> = LazyLock::new(|| {
@@ -105,12 +137,12 @@ static BY_NAME: LazyLock<HashSet<String>> = LazyLock::new(|| {
 
 /// Whether `RobotWare` or one of its options has this name; `key` in lower case.
 pub fn is_known(key: &str) -> bool {
-    let starts = |start: &&str| {
-        key.get(..start.len()).is_some_and(|head| head.eq_ignore_ascii_case(start))
-    };
+    let starts =
+        |start: &&str| key.get(..start.len()).is_some_and(|head| head.eq_ignore_ascii_case(start));
     instruction(key).is_some()
         || function(key).is_some()
         || predefined(key).is_some()
+        || error(key).is_some()
         || BY_NAME.contains(key)
         || CONSTANTS.iter().any(|start| starts(&start))
 }

@@ -16,9 +16,9 @@ pub(super) fn check(context: &Context<'_>, out: &mut Vec<Diagnostic>) {
         .filter(|place| matches!(place.kind(), NodeKind::CallStatement | NodeKind::FunctionCall));
     for place in calls {
         let Some((callee, arguments)) = call(place) else { continue };
-        let routine = context.declared(callee).filter(|id| {
-            matches!(context.names.declaration(*id).kind, Kind::Routine(_))
-        });
+        let routine = context
+            .declared(callee)
+            .filter(|id| matches!(context.names.declaration(*id).kind, Kind::Routine(_)));
         if let Some(routine) = routine
             && !place.is_broken()
         {
@@ -182,7 +182,8 @@ impl Call<'_, '_> {
 
     fn is_switch(&self, parameter: Parameter) -> bool {
         let ty = stated(&self.context.names, self.context.names.declaration(parameter.id).value);
-        matches!(ty, Type::Unknown) || Some(ty) == self.context.basics.switch.map(|id| Type::Of(id, 0))
+        matches!(ty, Type::Unknown)
+            || Some(ty) == self.context.basics.switch.map(|id| Type::Of(id, 0))
     }
 
     fn value(&self, parameter: Parameter, value: Place<'_>, out: &mut Vec<Diagnostic>) {
@@ -199,7 +200,10 @@ impl Call<'_, '_> {
             && let Some(found) = self.is_no_target(parameter.access, value)
         {
             let name = self.shown(parameter);
-            let message = format!("the argument {name} of {} has to be {wanted}, this is {found}", self.name());
+            let message = format!(
+                "the argument {name} of {} has to be {wanted}, this is {found}",
+                self.name()
+            );
             let keyword = if parameter.access == Access::Pers { "PERS" } else { "VAR" };
             let help = format!("declare it as {keyword}, or give one that is");
             out.push(error("access", value.span(), message, help));

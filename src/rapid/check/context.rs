@@ -12,10 +12,13 @@ use crate::rapid::text::{SourceFile, Span};
 pub enum Extent {
     /// Some modules; others may declare more names, and some may be alternatives to each other.
     Some,
-    /// The modules of one program; system modules may declare more names.
+    /// A program, as far as its entry and the names of its modules tell; system modules may declare
+    /// more names.
     Program,
-    /// All modules of a task, with the names that the controller itself declares (signals,
-    /// mechanical units), in lower case.
+    /// Modules that something states to be of one task; others may declare more names.
+    Task,
+    /// All modules of a task but those that options install, with the names that the controller
+    /// itself declares (signals, mechanical units), in lower case.
     All(Vec<String>),
 }
 
@@ -118,11 +121,11 @@ impl<'a> Context<'a> {
         file.map_or_else(String::new, |file| file.text(declaration.name).into_owned())
     }
 
-    /// The name of a declaration; of a predefined one in lower case.
+    /// The name of a declaration of a file or a predefined one.
     pub(super) fn shown(&self, id: DeclarationId) -> String {
-        if self.names.is_predefined(id) {
-            return self.names.key(id).to_owned();
+        match self.names.predefined_name(id) {
+            Some(name) => name.to_owned(),
+            None => self.name(self.names.declaration(id)),
         }
-        self.name(self.names.declaration(id))
     }
 }

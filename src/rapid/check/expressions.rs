@@ -27,7 +27,8 @@ pub(super) fn type_of(context: &Context<'_>, place: Place<'_>) -> Type {
         NodeKind::FieldAccess => {
             place.child(NodeKind::Name).map_or(Type::Unknown, |name| named(context, name))
         }
-        NodeKind::IndexAccess => match place.children().next().map(|array| type_of(context, array)) {
+        NodeKind::IndexAccess => match place.children().next().map(|array| type_of(context, array))
+        {
             Some(Type::Of(id, _)) => Type::Of(id, 0),
             _ => Type::Unknown,
         },
@@ -47,7 +48,10 @@ fn named(context: &Context<'_>, name: Place<'_>) -> Type {
     let names = &context.names;
     match context.use_at(name).map(|one| one.meaning) {
         Some(Meaning::Declared(id)) => match names.declaration(id).kind {
-            Kind::Routine(_) | Kind::Data(_) | Kind::Parameter(_) | Kind::Counter
+            Kind::Routine(_)
+            | Kind::Data(_)
+            | Kind::Parameter(_)
+            | Kind::Counter
             | Kind::Component => stated(names, names.declaration(id).value),
             _ => Type::Unknown,
         },
@@ -91,12 +95,7 @@ fn is_arithmetic(operator: TokenKind) -> bool {
 }
 
 /// The type of the result; `None` if the operator does not take these operands.
-fn arithmetic(
-    context: &Context<'_>,
-    operator: TokenKind,
-    left: Type,
-    right: Type,
-) -> Option<Type> {
+fn arithmetic(context: &Context<'_>, operator: TokenKind, left: Type, right: Type) -> Option<Type> {
     let basics = &context.basics;
     let [num, dnum, string, pos, orient] =
         [basics.num, basics.dnum, basics.string, basics.pos, basics.orient].map(scalar);
@@ -121,7 +120,9 @@ fn arithmetic(
         TokenKind::Plus | TokenKind::Minus | TokenKind::Star if left == pos && right == pos => {
             Some(pos)
         }
-        TokenKind::Star if left == pos && is_num(right) || is_num(left) && right == pos => Some(pos),
+        TokenKind::Star if left == pos && is_num(right) || is_num(left) && right == pos => {
+            Some(pos)
+        }
         TokenKind::Slash if left == pos && is_num(right) => Some(pos),
         TokenKind::Star if left == orient && right == orient => Some(orient),
         _ => None,
@@ -132,9 +133,7 @@ fn arithmetic(
 pub(super) fn operators(context: &Context<'_>, place: Place<'_>, out: &mut Vec<Diagnostic>) {
     let names = &context.names;
     let bool = scalar(context.basics.bool);
-    let wrong = |message: String, help: &str| {
-        error("type", place.span(), message, help.to_owned())
-    };
+    let wrong = |message: String, help: &str| error("type", place.span(), message, help.to_owned());
     if place.kind() == NodeKind::UnaryExpression {
         let Some(inner) = place.children().next() else { return };
         let ty = as_value(names, type_of(context, inner));

@@ -108,8 +108,10 @@ impl<'a> Walk<'_, 'a> {
         let num = scalar(self.context.basics.num);
         let given = type_of(self.context, variable);
         if !fits(self.context, num, given) || given == Type::Number {
-            let message =
-                format!("CONNECT needs a variable of type intnum, this is {}", describe(self.context, given));
+            let message = format!(
+                "CONNECT needs a variable of type intnum, this is {}",
+                describe(self.context, given)
+            );
             let help = "declare it: VAR intnum …".to_owned();
             self.out.push(error("type", variable.span(), message, help));
         } else if let Some(id) = self.context.declared(variable)

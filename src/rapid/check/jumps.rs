@@ -10,7 +10,13 @@ use crate::rapid::syntax::NodeKind;
 
 pub(super) fn check(context: &Context<'_>, out: &mut Vec<Diagnostic>) {
     for routine in context.routines() {
-        let mut jumps = Jumps { context, blocks: Vec::new(), count: 0, labels: BTreeMap::new(), gotos: Vec::new() };
+        let mut jumps = Jumps {
+            context,
+            blocks: Vec::new(),
+            count: 0,
+            labels: BTreeMap::new(),
+            gotos: Vec::new(),
+        };
         jumps.walk(routine);
         for (place, label, from) in &jumps.gotos {
             // The blocks around the label have to be around the GOTO, too.

@@ -40,9 +40,8 @@ fn attributes(place: Place<'_>, out: &mut Vec<Diagnostic>) {
         let word = String::from_utf8_lossy(token.text(&place.file.bytes)).to_uppercase();
         let rank = |word: &str| ORDER.iter().position(|known| *known == word);
         let fault = seen.iter().find_map(|(other, _)| {
-            let excludes = |(a, b): &(&str, &str)| {
-                *a == word && *b == other || *b == word && *a == other
-            };
+            let excludes =
+                |(a, b): &(&str, &str)| *a == word && *b == other || *b == word && *a == other;
             if *other == word {
                 Some((format!("{word} is given twice"), "remove one".to_owned()))
             } else if EXCLUSIVE.iter().any(excludes) {
@@ -87,9 +86,10 @@ fn entry(context: &Context<'_>, out: &mut Vec<Diagnostic>) {
             let message = format!("{name}, which starts the program, is no PROC");
             let help = "declare it as PROC".to_owned();
             out.push(error("entry", declaration.name, message, help));
-        } else if let Some(parameter) = names.inside(id).find(|inner| {
-            matches!(names.declaration(*inner).kind, Kind::Parameter(_))
-        }) {
+        } else if let Some(parameter) = names
+            .inside(id)
+            .find(|inner| matches!(names.declaration(*inner).kind, Kind::Parameter(_)))
+        {
             let message = format!("{name}, which starts the program, has a parameter");
             let help = "remove its parameters".to_owned();
             out.push(error("entry", names.declaration(parameter).name, message, help));

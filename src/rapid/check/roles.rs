@@ -1,7 +1,7 @@
 //! Names that are used as what they are not: a function as a statement, a procedure in an
 //! expression, a TRAP that is called.
 
-use super::context::Context;
+use super::context::{Context, Extent};
 use super::fault::{error, with_place};
 use crate::rapid::builtins;
 use crate::rapid::diagnostics::Diagnostic;
@@ -14,6 +14,12 @@ pub(super) fn check(context: &Context<'_>, out: &mut Vec<Diagnostic>) {
             match one.meaning {
                 Meaning::Declared(id) => {
                     let kind = context.names.declaration(id).kind;
+                    // A module that is not given may declare the name, and hide the predefined one.
+                    let hidden =
+                        context.names.is_predefined(id) && *context.task.extent == Extent::Some;
+                    if hidden {
+                        continue;
+                    }
                     if let Some((is, help)) = misuse(one.role, kind) {
                         let finding = wrong(source.file, one, is, help);
                         let declared = context.names.declaration(id).name;
@@ -24,7 +30,7 @@ pub(super) fn check(context: &Context<'_>, out: &mut Vec<Diagnostic>) {
                         });
                     }
                 }
-                Meaning::Known => {
+                Meaning::Known if *context.task.extent != Extent::Some => {
                     let name = text(source.file, one).to_lowercase();
                     let function = builtins::function(&name).is_some();
                     let instruction = builtins::instruction(&name).is_some();
@@ -76,9 +82,7 @@ fn misuse(role: Role, kind: Kind) -> Option<(&'static str, &'static str)> {
         (Role::Value, Kind::Routine(RoutineKind::Func)) => {
             Some(("a function, its arguments are missing", "write its arguments in parentheses"))
         }
-        (Role::Value, Kind::Routine(_)) => {
-            Some(("a routine and has no value", "name data here"))
-        }
+        (Role::Value, Kind::Routine(_)) => Some(("a routine and has no value", "name data here")),
         (Role::Value, Kind::Record | Kind::Alias | Kind::Basic(_)) => {
             Some(("a type and has no value", "name data of this type"))
         }

@@ -16,13 +16,14 @@ pub(super) fn is_slip(name: &str, meant: &str) -> bool {
     let (name, meant) = (name.to_lowercase(), meant.to_lowercase());
     let (a, b): (Vec<char>, Vec<char>) = (name.chars().collect(), meant.chars().collect());
     let (longest, shortest) = (a.len().max(b.len()), a.len().min(b.len()));
-    if shortest < 5 || a == b {
+    if shortest < 4 || a == b {
         return false;
     }
     let first = a.iter().zip(&b).take_while(|(x, y)| x == y).count();
     let last = a.iter().rev().zip(b.iter().rev()).take_while(|(x, y)| x == y).count();
     if longest == shortest {
-        let swapped = first + last + 2 == longest && a[first] == b[first + 1] && a[first + 1] == b[first];
+        let swapped =
+            first + last + 2 == longest && a[first] == b[first + 1] && a[first + 1] == b[first];
         return swapped && a[first].is_alphabetic() && a[first + 1].is_alphabetic();
     }
     let more = if a.len() > b.len() { &a } else { &b };
@@ -42,7 +43,8 @@ mod tests {
         for (name, meant) in [("pHoem", "pHome"), ("rPickPrat", "rPickPart"), ("pHomme", "pHome")] {
             assert!(is_slip(name, meant), "{name}");
         }
-        let others = [("p10", "p20"), ("gripL", "gripR"), ("pPick12", "pPick21"), ("pHome", "pHome")];
+        let others =
+            [("p10", "p20"), ("gripL", "gripR"), ("pPick12", "pPick21"), ("pHome", "pHome")];
         for (name, other) in others.into_iter().chain([("pPick", "pPicks"), ("rOpenA", "rOpenB")]) {
             assert!(!is_slip(name, other), "{name} {other}");
         }

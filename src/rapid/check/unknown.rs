@@ -2,8 +2,8 @@
 //!
 //! Labels and components are declared in the given text or not at all. Other names may be declared
 //! elsewhere: in another module, or in the controller (signals, mechanical units). Such a name is
-//! reported once. It is an error where the whole task is given, or where it is a visible name with a
-//! typing error; else a warning.
+//! reported once: as an error where it is a visible name of the program with a typing error, else as a
+//! warning. Even the backup of a whole task lacks modules that options install.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,6 +17,10 @@ use crate::rapid::diagnostics::Diagnostic;
 use crate::rapid::names::{Basic, Kind, Meaning, Role, Use};
 use crate::rapid::syntax::{NodeKind, TokenKind};
 use crate::rapid::text::{FileId, SourceFile, Span};
+
+/// Number of unknown names for which similar ones are looked for, so that a large file full of
+/// unknown names is checked in time.
+const SUGGESTIONS: usize = 200;
 
 /// Starts of the names that programmers give to signals.
 const SIGNALS: [&str; 6] = ["ai", "ao", "di", "do", "gi", "go"];
@@ -45,11 +49,23 @@ pub(super) fn check(context: &Context<'_>, out: &mut Vec<Diagnostic>) {
             }
         }
     }
-    for (key, (span, role, count)) in seen {
-        if !outside.declares(context, &key, span) {
-            out.push(global(context, &key, span, role, count));
-        }
+    seen.retain(|key, (span, ..)| !outside.declares(context, key, *span));
+    for (number, (key, (span, role, count))) in seen.into_iter().enumerate() {
+        let unknown = UnknownName { key, span, role, count };
+        let own = if number < SUGGESTIONS { candidates(context, span, role) } else { Vec::new() };
+        out.push(global(context, &unknown, &own));
     }
+}
+
+/// A name that nothing declares.
+struct UnknownName {
+    /// In lower case.
+    key: String,
+    /// Its first use.
+    span: Span,
+    role: Role,
+    /// The number of its uses.
+    count: usize,
 }
 
 fn component(file: &SourceFile, one: &Use, name: String) -> Diagnostic {
@@ -58,9 +74,11 @@ fn component(file: &SourceFile, one: &Use, name: String) -> Diagnostic {
     error("unknown-name", span, message, "name a component of its type".to_owned())
 }
 
-fn global(context: &Context<'_>, key: &str, span: Span, role: Role, count: usize) -> Diagnostic {
+fn global(context: &Context<'_>, unknown: &UnknownName, own: &[String]) -> Diagnostic {
+    let UnknownName { key, span, role, count } = unknown;
+    let span = *span;
     let file = context.task.files.iter().find(|source| source.file.id == span.file);
-    let name = file.map_or_else(|| key.to_owned(), |source| source.file.text(span).into_owned());
+    let name = file.map_or_else(|| key.clone(), |source| source.file.text(span).into_owned());
     let kind = match role {
         Role::Type => "type",
         Role::Procedure => "procedure",
@@ -72,32 +90,27 @@ fn global(context: &Context<'_>, key: &str, span: Span, role: Role, count: usize
         1 => String::new(),
         count => format!(" ({count} uses)"),
     };
-    let known = candidates(context, span, role);
-    let near = nearest(key, known.iter().map(String::as_str));
+    let near = nearest(key, own.iter().map(String::as_str));
+    // A routine of a user may have a name like a predefined one.
+    let slip = near.is_some_and(|near| is_slip(key, near));
+    let is_called = matches!(role, Role::Procedure | Role::Function);
+    let near = near.or_else(|| nearest(key, builtins::routine_names().filter(|_| is_called)));
     let help = match near {
         Some(near) => format!("did you mean {near}?"),
         None => "correct the name, or give the module that declares it, too".to_owned(),
     };
-    let slip = near.is_some_and(|near| is_slip(key, near));
-    match context.task.extent {
-        Extent::All(_) => {
-            let message = format!("unknown {kind}: no module of the task declares {name}{more}");
-            error("unknown-name", span, message, help)
-        }
-        Extent::Program if slip => {
-            let message = format!("unknown {kind}: no given file declares {name}{more}");
-            error("unknown-name", span, message, help)
-        }
-        Extent::Program | Extent::Some => {
-            let message = format!(
-                "unknown {kind}: no given file declares {name}{more}; another module may"
-            );
-            warning("unknown-name", span, message, help)
-        }
+    let (where_from, elsewhere) = match context.task.extent {
+        Extent::All(_) => ("no module of the task", "an installed module may"),
+        Extent::Task | Extent::Program | Extent::Some => ("no given file", "another module may"),
+    };
+    let message = format!("unknown {kind}: {where_from} declares {name}{more}");
+    if slip && *context.task.extent != Extent::Some {
+        return error("unknown-name", span, message, help);
     }
+    warning("unknown-name", span, format!("{message}; {elsewhere}"), help)
 }
 
-/// The names that could be meant at a place.
+/// The names of the task that could be meant at a place.
 fn candidates(context: &Context<'_>, span: Span, role: Role) -> Vec<String> {
     let names = &context.names;
     let fits = |kind: Kind| match role {
@@ -108,11 +121,11 @@ fn candidates(context: &Context<'_>, span: Span, role: Role) -> Vec<String> {
     let visible = names.visible(span.file, span.start).into_iter();
     let own = visible.filter(|id| fits(names.declaration(*id).kind));
     let own = own.map(|id| context.name(names.declaration(id)));
-    let built_in: Vec<String> = match role {
-        Role::Procedure | Role::Function => builtins::routine_names().map(str::to_owned).collect(),
+    let controller = match context.task.extent {
+        Extent::All(names) if role == Role::Value => names.clone(),
         _ => Vec::new(),
     };
-    own.chain(built_in).collect()
+    own.chain(controller).collect()
 }
 
 /// What the controller declares, as far as it is known or the program shows it.
@@ -222,9 +235,8 @@ fn levels(place: Place<'_>, open: &mut BTreeSet<(FileId, u32)>) {
         .node
         .own_tokens()
         .any(|token| matches!(token.kind(), TokenKind::Equal | TokenKind::NotEqual));
-    let is_level = |side: Place<'_>| {
-        matches!(side.text().to_lowercase().as_str(), "0" | "1" | "high" | "low")
-    };
+    let is_level =
+        |side: Place<'_>| matches!(side.text().to_lowercase().as_str(), "0" | "1" | "high" | "low");
     for (name, level) in [(left, right), (right, left)] {
         if compares && name.kind() == NodeKind::Reference && is_level(level) {
             open.insert((name.file.id, name.node.range().start));

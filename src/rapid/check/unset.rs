@@ -92,7 +92,7 @@ impl<'a> Follow<'_, 'a> {
                             self.statements(part, &mut branch);
                             after.append(&mut branch);
                         }
-                        kind if kind.is_value() => self.read(part, set),
+                        kind if kind.is_value() => self.condition(part, set),
                         _ => {
                             let mut branch = set.clone();
                             self.statement(part, &mut branch);
@@ -116,7 +116,7 @@ impl<'a> Follow<'_, 'a> {
                 }
                 written(self.context, place, set);
             }
-            kind if kind.is_value() => self.read(place, set),
+            kind if kind.is_value() => self.condition(place, set),
             NodeKind::CallStatement => {
                 self.arguments(place, set);
                 written(self.context, place, set);
@@ -126,6 +126,12 @@ impl<'a> Follow<'_, 'a> {
                 written(self.context, place, set);
             }
         }
+    }
+
+    /// An expression that is evaluated before other statements; a function in it may write.
+    fn condition(&mut self, place: Place<'a>, set: &mut Written) {
+        self.read(place, set);
+        written(self.context, place, set);
     }
 
     /// The indices of an assigned variable.
@@ -177,7 +183,9 @@ impl<'a> Follow<'_, 'a> {
         let declaration = self.context.names.declaration(id);
         let name = place.text();
         let message = format!("{name} is read before it is given a value");
-        let help = format!("give it a value first: without one it has 0, FALSE or \"\" here ({name} := …)");
+        let help = format!(
+            "give it a value first: without one it has 0, FALSE or \"\" here ({name} := …)"
+        );
         let finding = warning("no-value", place.span(), message, help);
         self.out.push(with_place(finding, declaration.name, "declared without a value"));
     }
@@ -196,9 +204,9 @@ fn passed<'a>(context: &Context<'a>, place: Place<'a>) -> Vec<(Place<'a>, Passed
         let values = place.children();
         return values.map(|value| (value, Passed::Unknown)).collect();
     };
-    let routine = context.declared(callee).filter(|id| {
-        matches!(context.names.declaration(*id).kind, Kind::Routine(_))
-    });
+    let routine = context
+        .declared(callee)
+        .filter(|id| matches!(context.names.declaration(*id).kind, Kind::Routine(_)));
     let known = routine.map(|id| parameters(context, id));
     let mut required = 0;
     let mut all = Vec::new();

@@ -17,6 +17,9 @@ pub(super) fn describe(context: &Context<'_>, ty: Type) -> String {
         Type::Unknown => "of unknown type".to_owned(),
         Type::Number => "a number".to_owned(),
         Type::Aggregate => "a list in brackets".to_owned(),
+        Type::Of(id, 0) if is_basic(&context.names, id, &[Basic::Number]) => {
+            "num or dnum".to_owned()
+        }
         Type::Of(id, 0) => context.shown(id),
         Type::Of(id, dimensions) => {
             let stars = vec!["*"; usize::from(dimensions)].join(",");
@@ -117,7 +120,12 @@ fn list(
         let name = context.shown(id);
         let parts: Vec<String> = components.iter().map(|part| context.shown(*part)).collect();
         let message = format!("{name} has {} components, this list has {count}", components.len());
-        out.push(error("components", place.span(), message, format!("give [{}]", parts.join(", "))));
+        out.push(error(
+            "components",
+            place.span(),
+            message,
+            format!("give [{}]", parts.join(", ")),
+        ));
         return;
     }
     for (part, component) in place.children().zip(components) {

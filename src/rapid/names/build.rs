@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use super::collect::{Bytes, Collected};
 use super::declaration::{DeclarationId, Kind, Reach, ValueType};
 use super::index::Names;
+use super::keys::KeyMap;
 use super::predefined::PREDEFINED;
 use super::resolve;
 use crate::rapid::syntax::Parse;
@@ -36,7 +37,7 @@ impl Names {
         let mut names = Names {
             keys,
             declarations,
-            global: HashMap::new(),
+            global: KeyMap::new(),
             local: HashMap::new(),
             uses: Vec::new(),
             predefined,
@@ -70,7 +71,7 @@ impl Names {
             if declaration.reach == Reach::Local {
                 self.local.entry((parent, declaration.key)).or_insert(id);
             } else {
-                self.global.entry(declaration.key).or_insert(id);
+                self.global.insert_first(declaration.key, id);
             }
         }
     }

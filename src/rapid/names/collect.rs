@@ -191,8 +191,7 @@ fn dimensions(node: Node<'_>) -> u8 {
     let stated = node
         .children()
         .find(|child| matches!(child.kind(), NodeKind::Dimensions | NodeKind::OpenDimensions));
-    let commas = |list: Node<'_>| {
-        list.own_tokens().filter(|token| token.kind() == TokenKind::Comma).count()
-    };
+    let commas =
+        |list: Node<'_>| list.own_tokens().filter(|token| token.kind() == TokenKind::Comma).count();
     stated.map_or(0, |list| u8::try_from(commas(list) + 1).unwrap_or(u8::MAX))
 }

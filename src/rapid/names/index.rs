@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use super::declaration::{Declaration, DeclarationId, Kind, Reach};
-use super::keys::{Key, Keys};
-use super::predefined::PREDEFINED;
+use super::keys::{Key, KeyMap, Keys};
+use super::predefined::{self, PREDEFINED};
 use super::uses::{Meaning, Use};
 use crate::rapid::text::{FileId, Span};
 
@@ -13,7 +13,7 @@ pub struct Names {
     pub(super) keys: Keys,
     pub(super) declarations: Vec<Declaration>,
     /// The first declaration in each name's scope.
-    pub(super) global: HashMap<Key, DeclarationId>,
+    pub(super) global: KeyMap<DeclarationId>,
     pub(super) local: HashMap<(DeclarationId, Key), DeclarationId>,
     /// The identifiers of each file, in the order of the text.
     pub(super) uses: Vec<(FileId, Vec<Use>)>,
@@ -32,6 +32,12 @@ impl Names {
     #[must_use]
     pub fn key(&self, id: DeclarationId) -> &str {
         self.keys.text(self.declaration(id).key)
+    }
+
+    /// The name of a predefined declaration as RAPID writes it; `None` for one of a file.
+    #[must_use]
+    pub fn predefined_name(&self, id: DeclarationId) -> Option<&'static str> {
+        self.is_predefined(id).then(|| predefined::text(self.declaration(id).name))
     }
 
     /// Whether it is predefined and has no place in a file.
@@ -77,6 +83,7 @@ impl Names {
     }
 
     /// All places where a declaration is named, its own included, in the order of the files.
+    #[cfg(feature = "internals")]
     pub fn references(&self, id: DeclarationId) -> impl Iterator<Item = Span> + '_ {
         self.uses.iter().flat_map(move |(file, uses)| {
             let named = uses.iter().filter(move |one| one.meaning == Meaning::Declared(id));
@@ -94,9 +101,10 @@ impl Names {
         };
         let module = self.modules().find(around);
         let routine = module.and_then(|id| self.inside(id).find(around));
-        let in_routine = routine.into_iter().flat_map(|id| self.inside(id)).filter(|id| {
-            self.declaration(*id).kind != Kind::Counter || around(id)
-        });
+        let in_routine = routine
+            .into_iter()
+            .flat_map(|id| self.inside(id))
+            .filter(|id| self.declaration(*id).kind != Kind::Counter || around(id));
         let in_module = module.into_iter().flat_map(|id| self.inside(id));
         let others = self.modules().filter(|id| Some(*id) != module);
         let global = others.flat_map(|id| self.inside(id));
@@ -111,7 +119,7 @@ impl Names {
     #[must_use]
     pub fn predefined(&self, name: &str) -> Option<DeclarationId> {
         let key = PREDEFINED.collected.keys.find(name)?;
-        PREDEFINED.by_name.get(&key).copied()
+        PREDEFINED.by_name.get(key)
     }
 
     /// The module that contains a declaration.
@@ -130,9 +138,9 @@ impl Names {
         module: Option<DeclarationId>,
         key: Key,
     ) -> Option<DeclarationId> {
-        let local = module.and_then(|module| self.local.get(&(module, key)));
-        let found = [local, self.global.get(&key), PREDEFINED.by_name.get(&key)];
-        found.into_iter().flatten().copied().find(|id| {
+        let local = module.and_then(|module| self.local.get(&(module, key)).copied());
+        let found = [local, self.global.get(key), PREDEFINED.by_name.get(key)];
+        found.into_iter().flatten().find(|id| {
             matches!(self.declaration(*id).kind, Kind::Record | Kind::Alias | Kind::Basic(_))
         })
     }

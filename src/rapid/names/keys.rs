@@ -39,6 +39,41 @@ impl Keys {
     }
 }
 
+/// Values by key: an array, because the keys are numbers without gaps.
+#[derive(Clone, Debug)]
+pub(super) struct KeyMap<T>(Vec<Option<T>>);
+
+impl<T: Copy> KeyMap<T> {
+    pub(super) fn new() -> KeyMap<T> {
+        KeyMap(Vec::new())
+    }
+
+    pub(super) fn get(&self, key: Key) -> Option<T> {
+        self.0.get(key.0 as usize).copied().flatten()
+    }
+
+    pub(super) fn insert(&mut self, key: Key, value: T) {
+        let index = key.0 as usize;
+        if index >= self.0.len() {
+            self.0.resize(index + 1, None);
+        }
+        self.0[index] = Some(value);
+    }
+
+    /// Inserts a value unless the key has one.
+    pub(super) fn insert_first(&mut self, key: Key, value: T) {
+        if self.get(key).is_none() {
+            self.insert(key, value);
+        }
+    }
+
+    pub(super) fn remove(&mut self, key: Key) {
+        if let Some(slot) = self.0.get_mut(key.0 as usize) {
+            *slot = None;
+        }
+    }
+}
+
 /// The keys of the spellings in one file, so that each spelling is decoded once.
 pub(super) struct Spellings<'a> {
     charset: Charset,

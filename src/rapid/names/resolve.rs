@@ -4,9 +4,9 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use super::collect::Bytes;
-use super::declaration::{Basic, DeclarationId, Kind, ValueType};
+use super::declaration::{Basic, DeclarationId, Kind, Reach, ValueType};
 use super::index::Names;
-use super::keys::{Key, Spellings};
+use super::keys::{Key, KeyMap, Spellings};
 use super::predefined::PREDEFINED;
 use super::uses::{Meaning, Role, Use};
 use crate::rapid::builtins;
@@ -30,14 +30,16 @@ pub(super) fn uses(
         names,
         source,
         declared,
-        module: bare,
+        module: None,
         bare,
-        routine: HashMap::new(),
-        labels: HashMap::new(),
+        local: KeyMap::new(),
+        routine: KeyMap::new(),
+        labels: KeyMap::new(),
         counters: Vec::new(),
-        outside: HashMap::new(),
+        outside: KeyMap::new(),
         uses: Vec::new(),
     };
+    resolver.enter(bare);
     resolver.node(parse.tree.root());
     // Recovery from syntax errors may put a node before its place.
     if !resolver.uses.is_sorted_by_key(|one| one.start) {
@@ -55,11 +57,14 @@ struct Resolver<'n, 'a> {
     module: Option<DeclarationId>,
     /// The module of declarations outside modules.
     bare: Option<DeclarationId>,
-    routine: HashMap<Key, DeclarationId>,
-    labels: HashMap<Key, DeclarationId>,
+    /// The LOCAL names of the module.
+    local: KeyMap<DeclarationId>,
+    /// The parameters and data of the routine.
+    routine: KeyMap<DeclarationId>,
+    labels: KeyMap<DeclarationId>,
     counters: Vec<(Key, DeclarationId)>,
     /// The meaning of names that no file declares.
-    outside: HashMap<Key, Meaning>,
+    outside: KeyMap<Meaning>,
     uses: Vec<Use>,
 }
 
@@ -85,16 +90,17 @@ impl Resolver<'_, '_> {
     fn node(&mut self, node: Node<'_>) {
         match node.kind() {
             NodeKind::Module => {
-                self.module = self.declared_by(node);
+                let module = self.declared_by(node);
+                self.enter(module);
                 self.children(node);
-                self.module = self.bare;
+                self.enter(self.bare);
             }
             kind if kind.is_routine() => self.routine(node),
             NodeKind::ForStatement => self.for_statement(node),
             NodeKind::GotoStatement => {
                 for name in node.children().filter(|child| child.kind() == NodeKind::Name) {
                     let key = self.key(name);
-                    let found = self.labels.get(&key).copied();
+                    let found = self.labels.get(key);
                     self.add(name, Role::Label, found.map_or(Meaning::Unknown, Meaning::Declared));
                 }
             }
@@ -121,6 +127,20 @@ impl Resolver<'_, '_> {
         }
     }
 
+    /// Makes the LOCAL names of a module visible, and those of the module before invisible.
+    fn enter(&mut self, module: Option<DeclarationId>) {
+        for id in self.module.into_iter().flat_map(|old| self.names.inside(old)) {
+            self.local.remove(self.names.declaration(id).key);
+        }
+        for id in module.into_iter().flat_map(|new| self.names.inside(new)) {
+            let declaration = self.names.declaration(id);
+            if declaration.reach == Reach::Local {
+                self.local.insert_first(declaration.key, id);
+            }
+        }
+        self.module = module;
+    }
+
     fn children(&mut self, node: Node<'_>) {
         for child in node.children() {
             self.node(child);
@@ -137,23 +157,21 @@ impl Resolver<'_, '_> {
     }
 
     fn routine(&mut self, node: Node<'_>) {
-        self.routine.clear();
-        self.labels.clear();
-        if let Some(id) = self.declared_by(node) {
-            let own: Vec<DeclarationId> = self.names.inside(id).collect();
-            for inner in own {
-                let declaration = self.names.declaration(inner);
-                let table = match declaration.kind {
-                    Kind::Label => &mut self.labels,
-                    Kind::Counter => continue,
-                    _ => &mut self.routine,
-                };
-                table.entry(declaration.key).or_insert(inner);
+        let id = self.declared_by(node);
+        for inner in id.into_iter().flat_map(|id| self.names.inside(id)) {
+            let declaration = self.names.declaration(inner);
+            match declaration.kind {
+                Kind::Label => self.labels.insert_first(declaration.key, inner),
+                Kind::Counter => {}
+                _ => self.routine.insert_first(declaration.key, inner),
             }
         }
         self.children(node);
-        self.routine.clear();
-        self.labels.clear();
+        for inner in id.into_iter().flat_map(|id| self.names.inside(id)) {
+            let key = self.names.declaration(inner).key;
+            self.labels.remove(key);
+            self.routine.remove(key);
+        }
     }
 
     /// The counter is visible in the block only.
@@ -235,7 +253,8 @@ impl Resolver<'_, '_> {
 
     fn argument_name(&mut self, name: Node<'_>, callee: Option<DeclarationId>) {
         let key = self.key(name);
-        let routine = callee.filter(|id| matches!(self.names.declaration(*id).kind, Kind::Routine(_)));
+        let routine =
+            callee.filter(|id| matches!(self.names.declaration(*id).kind, Kind::Routine(_)));
         let meaning = match routine {
             None => Meaning::Open,
             Some(routine) => {
@@ -313,13 +332,12 @@ impl Resolver<'_, '_> {
     /// The meaning of a name; where a routine is called, routines are preferred.
     fn look_up(&mut self, key: Key, called: bool) -> Meaning {
         let counter = self.counters.iter().rev().find(|(own, _)| *own == key).map(|(_, id)| *id);
-        let local = self.module.and_then(|module| self.names.local.get(&(module, key)));
         let found = [
             counter,
-            self.routine.get(&key).copied(),
-            local.copied(),
-            self.names.global.get(&key).copied(),
-            PREDEFINED.by_name.get(&key).copied(),
+            self.routine.get(key),
+            self.local.get(key),
+            self.names.global.get(key),
+            PREDEFINED.by_name.get(key),
         ];
         let is_routine =
             |id: &DeclarationId| matches!(self.names.declaration(*id).kind, Kind::Routine(_));
@@ -335,8 +353,8 @@ impl Resolver<'_, '_> {
 
     /// The meaning of a name that no file declares.
     fn outside(&mut self, key: Key) -> Meaning {
-        if let Some(meaning) = self.outside.get(&key) {
-            return *meaning;
+        if let Some(meaning) = self.outside.get(key) {
+            return meaning;
         }
         let name = self.names.keys.text(key);
         let meaning = if let Some(data) = builtins::predefined(name) {

@@ -24,7 +24,7 @@ use crate::tool::report;
 #[derive(Debug, Args)]
 #[command(
     after_help = "An error keeps the program from being loaded, or stops it at once. A name that \
-    another module may declare is a warning; in a complete backup it is an error.\n\nExit codes: 0 \
+    another module may declare is a warning.\n\nExit codes: 0 \
     without errors, 1 with errors, 2 where nothing can be read.\n\nExample: joulepath check \
     fixtures/pick_place"
 )]

@@ -69,9 +69,8 @@ pub fn json(findings: &[Diagnostic], files: &[SourceFile], checked: usize) -> Va
 /// The summary line.
 #[must_use]
 pub fn summary(findings: &[Diagnostic], checked: usize) -> String {
-    let counted = |count: usize, what: &str| {
-        format!("{count} {what}{}", if count == 1 { "" } else { "s" })
-    };
+    let counted =
+        |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
     format!(
         "{}: {}, {}\n",
         counted(checked, "file"),

@@ -11,6 +11,10 @@ use crate::rapid::text::{self, is_encoded_module};
 use crate::tool::cli::backup::{self, is_shared};
 use crate::tool::cli::input::{Input, InputFile};
 
+/// Most programs of one folder, times the files that they share, for which the shared files are
+/// checked with each program.
+const SHARED: usize = 4_000;
+
 /// The files of a task.
 pub(super) struct TaskFiles {
     /// Their numbers.
@@ -43,7 +47,7 @@ pub(super) fn tasks(input: &Input, parses: &[Parse], entry: &str) -> Vec<TaskFil
             .collect();
         taken.extend(files.iter().copied());
         if !files.is_empty() {
-            tasks.push(facts.task(files, Extent::Program));
+            tasks.push(facts.task(files, Extent::Task));
         }
     }
     let rest: Vec<usize> = (0..input.files.len()).filter(|index| !taken.contains(index)).collect();
@@ -112,6 +116,10 @@ impl Facts<'_> {
             match with.as_slice() {
                 [] => tasks.push(self.task(without, Extent::Some)),
                 [_] => self.split(files, tasks),
+                several if several.len() * without.len() > SHARED => {
+                    tasks.extend(several.iter().map(|one| self.task(vec![*one], Extent::Some)));
+                    tasks.push(self.task(without, Extent::Some));
+                }
                 several => tasks.extend(several.iter().map(|one| {
                     let files = std::iter::once(*one).chain(without.iter().copied()).collect();
                     self.task(files, Extent::Some)
@@ -154,7 +162,7 @@ fn of_backups(input: &Input, parses: &[Parse], entry: &str) -> Vec<TaskFiles> {
         let facts = Facts { input, parses, entry: &entry };
         let extent = match controller_names(root) {
             Some(names) if is_complete(root, folder, input, &files) => Extent::All(names),
-            _ if files.len() > 1 => Extent::Program,
+            _ if files.len() > 1 => Extent::Task,
             _ => Extent::Some,
         };
         tasks.push(facts.task(files, extent));
@@ -164,11 +172,14 @@ fn of_backups(input: &Input, parses: &[Parse], entry: &str) -> Vec<TaskFiles> {
 
 /// Whether all modules of a task were read, and as text.
 fn is_complete(root: &Path, folder: &str, input: &Input, files: &[usize]) -> bool {
-    let read: BTreeSet<_> =
-        files.iter().filter_map(|file| fs::canonicalize(&input.files[*file].source.path).ok()).collect();
+    let read: BTreeSet<_> = files
+        .iter()
+        .filter_map(|file| fs::canonicalize(&input.files[*file].source.path).ok())
+        .collect();
     let encoded = files.iter().any(|file| is_encoded_module(&input.files[*file].source.bytes));
     let modules = backup::modules(root, folder);
-    !encoded && modules.iter().all(|path| fs::canonicalize(path).is_ok_and(|path| read.contains(&path)))
+    !encoded
+        && modules.iter().all(|path| fs::canonicalize(path).is_ok_and(|path| read.contains(&path)))
 }
 
 /// The names that the configuration of a backup declares (signals, mechanical units, tasks), in
