@@ -1,9 +1,9 @@
 //! Types of expressions, and what is wrong inside them.
 
 use super::context::{Context, Place};
+use super::describe::describe;
 use super::fault::error;
 use super::types::{Type, as_value, scalar, stated};
-use super::values::describe;
 use crate::rapid::diagnostics::Diagnostic;
 use crate::rapid::names::{Kind, Meaning};
 use crate::rapid::syntax::{NodeKind, TokenKind};

@@ -1,10 +1,11 @@
 //! Statements that only some places allow: RETURN, RETRY, TRYNEXT, RAISE, handlers, CONNECT.
 
 use super::context::{Context, Place};
+use super::describe::describe;
 use super::expressions::type_of;
 use super::fault::error;
 use super::types::{Type, scalar, stated};
-use super::values::{compare, describe, fits};
+use super::values::{compare, fits};
 use crate::rapid::diagnostics::Diagnostic;
 use crate::rapid::names::{Kind, Storage};
 use crate::rapid::syntax::NodeKind;

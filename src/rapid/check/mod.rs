@@ -7,6 +7,7 @@
 
 mod arguments;
 mod context;
+mod describe;
 mod duplicates;
 mod expressions;
 mod fault;

@@ -1,10 +1,11 @@
 //! Types in statements and declarations: assignments, conditions, first values, indices.
 
 use super::context::{Context, Place};
+use super::describe::describe;
 use super::expressions::{operators, type_of};
 use super::fault::{error, with_place};
 use super::types::{Type, is_basic, scalar, stated};
-use super::values::{compare, describe, fits};
+use super::values::{compare, fits};
 use crate::rapid::diagnostics::Diagnostic;
 use crate::rapid::names::{Basic, DeclarationId, Kind, Meaning, Storage};
 use crate::rapid::syntax::NodeKind;

@@ -14,6 +14,9 @@ use crate::rapid::diagnostics::Diagnostic;
 use crate::rapid::names::{Access, Basic, DeclarationId, Kind, Storage};
 use crate::rapid::syntax::NodeKind;
 
+/// Most variables without a value of a routine that is followed; no person writes more.
+const MOST_VARIABLES: usize = 1_000;
+
 pub(super) fn check(context: &Context<'_>, out: &mut Vec<Diagnostic>) {
     for routine in context.routines() {
         let skipped = |kind| {
@@ -23,7 +26,7 @@ pub(super) fn check(context: &Context<'_>, out: &mut Vec<Diagnostic>) {
             continue;
         }
         let unset = unset(context, routine);
-        if unset.is_empty() {
+        if unset.is_empty() || unset.len() > MOST_VARIABLES {
             continue;
         }
         let mut follow = Follow { context, unset, out };

@@ -1,6 +1,7 @@
 //! Whether a value fits where it is put.
 
 use super::context::{Context, Place};
+use super::describe::describe;
 use super::expressions::type_of;
 use super::fault::error;
 use super::types::{Type, as_value, is_basic, scalar, stated};
@@ -10,23 +11,6 @@ use crate::rapid::syntax::NodeKind;
 
 /// Deepest nesting of lists that is compared.
 const MAX_DEPTH: u32 = 16;
-
-/// A type for messages: `num`, `num{*}`.
-pub(super) fn describe(context: &Context<'_>, ty: Type) -> String {
-    match ty {
-        Type::Unknown => "of unknown type".to_owned(),
-        Type::Number => "a number".to_owned(),
-        Type::Aggregate => "a list in brackets".to_owned(),
-        Type::Of(id, 0) if is_basic(&context.names, id, &[Basic::Number]) => {
-            "num or dnum".to_owned()
-        }
-        Type::Of(id, 0) => context.shown(id),
-        Type::Of(id, dimensions) => {
-            let stars = vec!["*"; usize::from(dimensions)].join(",");
-            format!("{}{{{stars}}}", context.shown(id))
-        }
-    }
-}
 
 /// Whether a value of one type can be given where another is needed. Lists are looked at elsewhere.
 pub(super) fn fits(context: &Context<'_>, wanted: Type, given: Type) -> bool {

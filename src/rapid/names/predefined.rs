@@ -59,3 +59,30 @@ pub(super) fn text(span: Span) -> &'static str {
     let module = DECLARATIONS.get((LAST_FILE - span.file.0) as usize);
     module.and_then(|text| text.get(span.start as usize..span.end as usize)).unwrap_or_default()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rapid::builtins::{function, instruction};
+    use crate::rapid::names::declaration::RoutineKind;
+
+    #[test]
+    fn declarations_are_free_of_errors_and_agree_with_the_tables() {
+        for text in DECLARATIONS {
+            assert_eq!(syntax::parse(text.as_bytes()).errors, []);
+        }
+        let all = &PREDEFINED.collected;
+        for declaration in &all.declarations {
+            let name = all.keys.text(declaration.key);
+            let typed = declaration.value.declaration.is_some();
+            match declaration.kind {
+                Kind::Routine(RoutineKind::Proc) => assert!(instruction(name).is_some(), "{name}"),
+                Kind::Routine(_) => assert!(function(name).is_some() && typed, "{name}"),
+                Kind::Data(_) | Kind::Parameter(_) | Kind::Component | Kind::Alias => {
+                    assert!(typed, "{name} has no type");
+                }
+                _ => {}
+            }
+        }
+    }
+}

@@ -188,7 +188,7 @@ fn block<'t>(text: &'t str, name: &str) -> impl Iterator<Item = &'t str> {
 }
 
 /// The files in the module folders of a task, and of the modules that all tasks share.
-pub(super) fn modules(root: &Path, task: &str) -> Vec<PathBuf> {
+pub(super) fn files(root: &Path, task: &str) -> Vec<PathBuf> {
     let folders = [task, SHARED].into_iter().flat_map(|task| {
         let task = child(root, "RAPID").and_then(|rapid| child(&rapid, task));
         MODULE_FOLDERS.iter().filter_map(move |name| child(task.as_deref()?, name))

@@ -6,7 +6,7 @@
 
 mod search;
 
-pub(super) use search::{InputError, Unreadable};
+pub(super) use search::{InputError, Unreadable, is_module};
 
 use std::collections::BTreeSet;
 use std::fs;

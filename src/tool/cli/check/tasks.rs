@@ -9,7 +9,7 @@ use crate::rapid::check::Extent;
 use crate::rapid::syntax::{NodeKind, Parse};
 use crate::rapid::text::{self, is_encoded_module};
 use crate::tool::cli::backup::{self, is_shared};
-use crate::tool::cli::input::{Input, InputFile};
+use crate::tool::cli::input::{self, Input, InputFile};
 
 /// Most programs of one folder, times the files that they share, for which the shared files are
 /// checked with each program.
@@ -177,9 +177,9 @@ fn is_complete(root: &Path, folder: &str, input: &Input, files: &[usize]) -> boo
         .filter_map(|file| fs::canonicalize(&input.files[*file].source.path).ok())
         .collect();
     let encoded = files.iter().any(|file| is_encoded_module(&input.files[*file].source.bytes));
-    let modules = backup::modules(root, folder);
-    !encoded
-        && modules.iter().all(|path| fs::canonicalize(path).is_ok_and(|path| read.contains(&path)))
+    let files = backup::files(root, folder);
+    let mut modules = files.iter().filter(|path| input::is_module(path));
+    !encoded && modules.all(|path| fs::canonicalize(path).is_ok_and(|path| read.contains(&path)))
 }
 
 /// The names that the configuration of a backup declares (signals, mechanical units, tasks), in

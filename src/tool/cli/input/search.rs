@@ -244,12 +244,15 @@ fn walk(folder: &Path, depth: usize, files: &mut Vec<PathBuf>, unreadable: &mut 
         let is_folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
         if is_folder && depth < MAX_FOLDERS {
             walk(&path, depth + 1, files, unreadable);
-        } else if (has_extension(&path, &MODULES) || has_extension(&path, &[PROGRAM]))
-            && path.is_file()
-        {
+        } else if (is_module(&path) || has_extension(&path, &[PROGRAM])) && path.is_file() {
             files.push(path);
         }
     }
+}
+
+/// Whether a file of this name is searched for in folders as a module.
+pub(in crate::tool::cli) fn is_module(path: &Path) -> bool {
+    has_extension(path, &MODULES)
 }
 
 fn has_extension(path: &Path, extensions: &[&str]) -> bool {
