@@ -138,13 +138,13 @@ static BY_NAME: LazyLock<HashSet<String>> = LazyLock::new(|| {
 /// Whether `RobotWare` or one of its options has this name; `key` in lower case.
 pub fn is_known(key: &str) -> bool {
     let starts =
-        |start: &&str| key.get(..start.len()).is_some_and(|head| head.eq_ignore_ascii_case(start));
+        |start: &str| key.get(..start.len()).is_some_and(|head| head.eq_ignore_ascii_case(start));
     instruction(key).is_some()
         || function(key).is_some()
         || predefined(key).is_some()
         || error(key).is_some()
         || BY_NAME.contains(key)
-        || CONSTANTS.iter().any(|start| starts(&start))
+        || CONSTANTS.iter().any(|start| starts(start))
 }
 
 /// The names of the instructions and functions whose parameters are known.

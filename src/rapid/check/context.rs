@@ -84,7 +84,7 @@ impl<'a> Place<'a> {
 impl<'a> Context<'a> {
     pub(super) fn new(task: &'a Task<'a>) -> Context<'a> {
         let names = Names::new(task.files);
-        let basics = Basics::new(&names);
+        let basics = Basics::new();
         let texts = task.files.iter().map(|source| (source.file.id, source.file)).collect();
         Context { task, names, basics, texts }
     }

@@ -6,7 +6,7 @@ use super::fault::error;
 use super::types::{Type, as_value, scalar, stated};
 use crate::rapid::diagnostics::Diagnostic;
 use crate::rapid::names::{Kind, Meaning};
-use crate::rapid::syntax::{NodeKind, TokenKind};
+use crate::rapid::syntax::{NodeKind, Token, TokenKind};
 
 /// The type of an expression.
 pub(super) fn type_of(context: &Context<'_>, place: Place<'_>) -> Type {
@@ -62,7 +62,7 @@ fn named(context: &Context<'_>, name: Place<'_>) -> Type {
 
 /// The operator of a binary expression.
 fn operator(place: Place<'_>) -> Option<TokenKind> {
-    place.node.own_tokens().next().map(|token| token.kind())
+    place.node.own_tokens().next().map(Token::kind)
 }
 
 fn operands(context: &Context<'_>, place: Place<'_>) -> Option<(Type, Type)> {

@@ -8,7 +8,8 @@ use super::types::{Type, scalar, stated};
 use super::values::{compare, fits};
 use crate::rapid::diagnostics::Diagnostic;
 use crate::rapid::names::{Kind, Storage};
-use crate::rapid::syntax::NodeKind;
+use crate::rapid::syntax::{NodeKind, Token};
+use crate::rapid::text::Span;
 
 pub(super) fn check(context: &Context<'_>, out: &mut Vec<Diagnostic>) {
     for routine in context.routines() {
@@ -126,10 +127,10 @@ impl<'a> Walk<'_, 'a> {
 }
 
 /// The keyword that begins a handler.
-fn keyword(place: Place<'_>) -> crate::rapid::text::Span {
+fn keyword(place: Place<'_>) -> Span {
     let token = place.node.own_tokens().next();
-    let range = token.map_or(place.node.range(), |token| token.range());
-    crate::rapid::text::Span { start: range.start, end: range.end, ..place.span() }
+    let range = token.map_or(place.node.range(), Token::range);
+    Span { start: range.start, end: range.end, ..place.span() }
 }
 
 /// A function that can end without a value in every way.

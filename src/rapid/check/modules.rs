@@ -4,7 +4,7 @@ use super::context::{Context, Place};
 use super::fault::error;
 use crate::rapid::diagnostics::Diagnostic;
 use crate::rapid::names::{Kind, Reach, RoutineKind};
-use crate::rapid::syntax::{Node, NodeKind, TokenKind};
+use crate::rapid::syntax::{Node, NodeKind, Token, TokenKind};
 use crate::rapid::text::Span;
 
 /// The attributes in the order that RAPID needs.
@@ -62,7 +62,7 @@ fn attributes(place: Place<'_>, out: &mut Vec<Diagnostic>) {
 }
 
 fn persistent(place: Place<'_>, out: &mut Vec<Diagnostic>) {
-    let keyword = |node: Node<'_>| node.own_token(TokenKind::Pers).map(|token| token.range());
+    let keyword = |node: Node<'_>| node.own_token(TokenKind::Pers).map(Token::range);
     if let Some(range) = keyword(place.node) {
         let span = Span { start: range.start, end: range.end, ..place.span() };
         let message = "PERS inside a routine".to_owned();

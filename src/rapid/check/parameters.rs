@@ -47,7 +47,7 @@ impl Argument<'_> {
 
 /// The callee and the arguments of a call statement or a function call; `None` for a call by a
 /// string.
-pub(super) fn call<'a>(place: Place<'a>) -> Option<(Place<'a>, Vec<Argument<'a>>)> {
+pub(super) fn call(place: Place<'_>) -> Option<(Place<'_>, Vec<Argument<'_>>)> {
     let mut children = place.children();
     let callee = children.next().filter(|name| name.kind() == NodeKind::Name)?;
     let arguments = children.map(|whole| {

@@ -23,10 +23,10 @@ pub(super) fn check(context: &Context<'_>, out: &mut Vec<Diagnostic>) {
                     if let Some((is, help)) = misuse(one.role, kind) {
                         let finding = wrong(source.file, one, is, help);
                         let declared = context.names.declaration(id).name;
-                        let place = !context.names.is_predefined(id);
-                        out.push(match place {
-                            true => with_place(finding, declared, "declared here"),
-                            false => finding,
+                        out.push(if context.names.is_predefined(id) {
+                            finding
+                        } else {
+                            with_place(finding, declared, "declared here")
                         });
                     }
                 }

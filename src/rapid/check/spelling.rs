@@ -21,7 +21,9 @@ pub(super) fn check(context: &Context<'_>, out: &mut Vec<Diagnostic>) {
             name(context, id, out);
             global.push(id);
             let own: Vec<DeclarationId> = names.inside(id).collect();
-            own.iter().for_each(|inner| name(context, *inner, out));
+            for inner in &own {
+                name(context, *inner, out);
+            }
             look_alikes(context, &own, out);
         }
     }

@@ -6,7 +6,7 @@ pub(super) fn nearest<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> O
     let most = if lower.chars().count() < 5 { 1 } else { 2 };
     let distance = |other: &str| strsim::damerau_levenshtein(&lower, &other.to_lowercase());
     let near = known.map(|other| (distance(other), other)).filter(|(far, _)| *far <= most);
-    near.min_by(|a, b| a.cmp(b)).map(|(_, other)| other)
+    near.min().map(|(_, other)| other)
 }
 
 /// Whether one name is the other with a typing error: two neighbouring letters swapped, or one

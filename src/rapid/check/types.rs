@@ -28,8 +28,8 @@ pub(super) struct Basics {
 }
 
 impl Basics {
-    pub(super) fn new(names: &Names) -> Basics {
-        let find = |name| names.predefined(name);
+    pub(super) fn new() -> Basics {
+        let find = Names::predefined;
         Basics {
             num: find("num"),
             dnum: find("dnum"),

@@ -40,7 +40,7 @@ pub(super) fn check(context: &Context<'_>, out: &mut Vec<Diagnostic>) {
                     format!("unknown label: this routine has no label {name}"),
                     format!("write {name}: before the statement to go to"),
                 )),
-                Role::Component => out.push(component(source.file, one, name)),
+                Role::Component => out.push(component(source.file, one, &name)),
                 Role::Argument => {}
                 _ => {
                     let entry = seen.entry(name.to_lowercase()).or_insert((span, one.role, 0));
@@ -68,7 +68,7 @@ struct UnknownName {
     count: usize,
 }
 
-fn component(file: &SourceFile, one: &Use, name: String) -> Diagnostic {
+fn component(file: &SourceFile, one: &Use, name: &str) -> Diagnostic {
     let span = Span { file: file.id, start: one.start, end: one.end };
     let message = format!("unknown component: the value before the dot has no component {name}");
     error("unknown-name", span, message, "name a component of its type".to_owned())

@@ -47,7 +47,7 @@ impl Names {
             let found = names.find_type(names.module_of(id), key);
             names.declarations[id.0 as usize].value.declaration = found;
         }
-        let num = names.predefined("num");
+        let num = Names::predefined("num");
         for declaration in &mut names.declarations {
             if declaration.kind == Kind::Counter {
                 declaration.value = ValueType { declaration: num, dimensions: 0 };
@@ -78,5 +78,5 @@ impl Names {
 }
 
 fn bytes_of<'a>(source: &SourceText<'a>) -> Bytes<'a> {
-    Bytes { file: source.file.id, bytes: &source.file.bytes, charset: source.file.charset }
+    Bytes { file: source.file.id, content: &source.file.bytes, charset: source.file.charset }
 }

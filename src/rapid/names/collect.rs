@@ -21,7 +21,7 @@ pub(super) struct Collected {
 #[derive(Clone, Copy)]
 pub(super) struct Bytes<'a> {
     pub(super) file: FileId,
-    pub(super) bytes: &'a [u8],
+    pub(super) content: &'a [u8],
     pub(super) charset: Charset,
 }
 
@@ -50,7 +50,9 @@ impl Collected {
         }
         if let Some(items) = bare {
             collector.inside(root, Kind::Module, Reach::Global, |collector| {
-                items.into_iter().for_each(|item| collector.item(item));
+                for item in items {
+                    collector.item(item);
+                }
             });
         }
     }
@@ -79,11 +81,11 @@ impl Collector<'_, '_> {
             Some(name) => self.source.span(name),
             None => Span { end: node.range().start, ..self.source.span(node) },
         };
-        let text = name.map_or(&[][..], |name| name.text(self.source.bytes));
+        let text = name.map_or(&[][..], |name| name.text(self.source.content));
         let key = self.spellings.key(&mut self.all.keys, text);
         let id = DeclarationId(self.all.declarations.len() as u32);
         if let Some(type_name) = node.child(NodeKind::TypeName) {
-            let text = type_name.text(self.source.bytes);
+            let text = type_name.text(self.source.content);
             let type_key = self.spellings.key(&mut self.all.keys, text);
             self.all.stated.push((id, type_key));
         }

@@ -117,7 +117,7 @@ impl Names {
 
     /// The predefined declaration of a name in lower case.
     #[must_use]
-    pub fn predefined(&self, name: &str) -> Option<DeclarationId> {
+    pub fn predefined(name: &str) -> Option<DeclarationId> {
         let key = PREDEFINED.collected.keys.find(name)?;
         PREDEFINED.by_name.get(key)
     }

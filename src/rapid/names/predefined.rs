@@ -24,7 +24,7 @@ pub(super) static PREDEFINED: LazyLock<Predefined> = LazyLock::new(|| {
     for (index, text) in DECLARATIONS.into_iter().enumerate() {
         let bytes = text.as_bytes();
         let file = FileId(LAST_FILE - index as u32);
-        let source = Bytes { file, bytes, charset: charset(bytes) };
+        let source = Bytes { file, content: bytes, charset: charset(bytes) };
         collected.add(source, &syntax::parse(bytes));
     }
     let top = collected.declarations.iter().enumerate().filter(|(_, declaration)| {

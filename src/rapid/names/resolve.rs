@@ -70,7 +70,7 @@ struct Resolver<'n, 'a> {
 
 impl Resolver<'_, '_> {
     fn key(&mut self, node: Node<'_>) -> Key {
-        self.spellings.key(&mut self.names.keys, node.text(self.source.bytes))
+        self.spellings.key(&mut self.names.keys, node.text(self.source.content))
     }
 
     fn add(&mut self, node: Node<'_>, role: Role, meaning: Meaning) {
@@ -358,7 +358,7 @@ impl Resolver<'_, '_> {
         }
         let name = self.names.keys.text(key);
         let meaning = if let Some(data) = builtins::predefined(name) {
-            let declaration = self.names.predefined(data.type_name);
+            let declaration = Names::predefined(data.type_name);
             Meaning::Predefined(ValueType { declaration, dimensions: 0 })
         } else if builtins::is_known(name) {
             Meaning::Known
