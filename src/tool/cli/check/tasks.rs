@@ -77,11 +77,16 @@ struct Facts<'i> {
 }
 
 impl Facts<'_> {
-    fn starts(&self, file: usize) -> bool {
+    /// The number of procedures of a file that start a program: one for each program in it.
+    fn entries(&self, file: usize) -> usize {
         let entry = self.entry.to_lowercase();
         let procedures =
             names(&self.input.files[file], &self.parses[file], NodeKind::ProcDeclaration);
-        procedures.contains(&entry)
+        procedures.iter().filter(|name| **name == entry).count()
+    }
+
+    fn starts(&self, file: usize) -> bool {
+        self.entries(file) > 0
     }
 
     fn task(&self, files: Vec<usize>, extent: Extent) -> TaskFiles {
@@ -94,14 +99,9 @@ impl Facts<'_> {
         if files.is_empty() {
             return;
         }
-        let entries = files.iter().filter(|file| self.starts(**file)).count();
-        if entries <= 1 {
-            let extent = if entries == 1 && !self.has_alternatives(&files) {
-                Extent::Program
-            } else {
-                Extent::Some
-            };
-            tasks.push(self.task(files, extent));
+        let starting = files.iter().filter(|file| self.starts(**file)).count();
+        if starting <= 1 {
+            tasks.push(self.one_entry(files));
             return;
         }
         let mut folders: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
@@ -115,10 +115,13 @@ impl Facts<'_> {
                 files.iter().copied().partition(|file| self.starts(*file));
             match with.as_slice() {
                 [] => tasks.push(self.task(without, Extent::Some)),
-                [_] => self.split(files, tasks),
+                [_] => tasks.push(self.one_entry(files)),
                 several if several.len() * without.len() > SHARED => {
-                    tasks.extend(several.iter().map(|one| self.task(vec![*one], Extent::Some)));
+                    tasks.extend(several.iter().map(|one| self.one_entry(vec![*one])));
                     tasks.push(self.task(without, Extent::Some));
+                }
+                several if without.is_empty() => {
+                    tasks.extend(several.iter().map(|one| self.one_entry(vec![*one])));
                 }
                 several => tasks.extend(several.iter().map(|one| {
                     let files = std::iter::once(*one).chain(without.iter().copied()).collect();
@@ -126,6 +129,14 @@ impl Facts<'_> {
                 })),
             }
         }
+    }
+
+    /// Files of which at most one has an entry. A file with several entries is a collection of
+    /// programs.
+    fn one_entry(&self, files: Vec<usize>) -> TaskFiles {
+        let entries: usize = files.iter().map(|file| self.entries(*file)).sum();
+        let is_program = entries == 1 && !self.has_alternatives(&files);
+        self.task(files, if is_program { Extent::Program } else { Extent::Some })
     }
 
     /// Whether two files that were found in a folder have modules of one name: they are variants,
