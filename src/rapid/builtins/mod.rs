@@ -26,7 +26,7 @@ mod types;
 pub use data::{
     Cause, Literal, Predefined, error, is_controller_specific, predefined, speeds, zones,
 };
-pub use declarations::DECLARATIONS;
+pub use declarations::{DECLARATIONS, OTHERS};
 pub use function::{Function, Source};
 #[cfg(test)]
 pub(in crate::rapid) use functions::FUNCTIONS;

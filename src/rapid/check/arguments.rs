@@ -7,18 +7,21 @@ use super::suggest::nearest;
 use super::types::{Type, stated};
 use super::values::compare;
 use crate::rapid::diagnostics::Diagnostic;
-use crate::rapid::names::{Access, DeclarationId, Kind, Meaning, Storage};
+use crate::rapid::names::{Access, DeclarationId, Kind, Meaning, RoutineKind, Storage};
 use crate::rapid::syntax::NodeKind;
 
 pub(super) fn check(context: &Context<'_>, out: &mut Vec<Diagnostic>) {
-    let calls = context
-        .nodes()
-        .filter(|place| matches!(place.kind(), NodeKind::CallStatement | NodeKind::FunctionCall));
-    for place in calls {
+    for place in context.nodes() {
+        let called = match place.kind() {
+            NodeKind::CallStatement => RoutineKind::Proc,
+            NodeKind::FunctionCall => RoutineKind::Func,
+            _ => continue,
+        };
         let Some((callee, arguments)) = call(place) else { continue };
+        // A routine of another kind is reported elsewhere.
         let routine = context
             .declared(callee)
-            .filter(|id| matches!(context.names.declaration(*id).kind, Kind::Routine(_)));
+            .filter(|id| context.names.declaration(*id).kind == Kind::Routine(called));
         if let Some(routine) = routine
             && !place.is_broken()
         {
@@ -151,7 +154,9 @@ impl Call<'_, '_> {
     ) {
         let Some(name) = argument.name else { return };
         let Some(parameter) = self.parameter(name).filter(|one| one.group.is_some()) else {
-            out.push(self.unknown(name, true));
+            if !self.context.names.has_other_parameters(self.routine) {
+                out.push(self.unknown(name, true));
+            }
             return;
         };
         if !argument.is_conditional() {

@@ -6,6 +6,7 @@ use super::declaration::{Declaration, DeclarationId, Kind, Reach};
 use super::keys::{Key, KeyMap, Keys};
 use super::predefined::{self, PREDEFINED};
 use super::uses::{Meaning, Use};
+use crate::rapid::builtins::OTHERS;
 use crate::rapid::text::{FileId, Span};
 
 /// What the names of the files of one task mean.
@@ -38,6 +39,12 @@ impl Names {
     #[must_use]
     pub fn predefined_name(&self, id: DeclarationId) -> Option<&'static str> {
         self.is_predefined(id).then(|| predefined::text(self.declaration(id).name))
+    }
+
+    /// Whether a routine is predefined and may have optional parameters that are not declared.
+    #[must_use]
+    pub fn has_other_parameters(&self, routine: DeclarationId) -> bool {
+        self.is_predefined(routine) && self.inside(routine).any(|id| self.key(id) == OTHERS)
     }
 
     /// Whether it is predefined and has no place in a file.

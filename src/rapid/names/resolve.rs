@@ -262,7 +262,11 @@ impl Resolver<'_, '_> {
                     let declaration = self.names.declaration(*id);
                     matches!(declaration.kind, Kind::Parameter(_)) && declaration.key == key
                 });
-                parameter.map_or(Meaning::Unknown, Meaning::Declared)
+                match parameter {
+                    Some(id) => Meaning::Declared(id),
+                    None if self.names.has_other_parameters(routine) => Meaning::Open,
+                    None => Meaning::Unknown,
+                }
             }
         };
         self.add(name, Role::Argument, meaning);
