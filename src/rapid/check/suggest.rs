@@ -27,11 +27,13 @@ pub(super) fn is_slip(name: &str, meant: &str) -> bool {
         return swapped && a[first].is_alphabetic() && a[first + 1].is_alphabetic();
     }
     let more = if a.len() > b.len() { &a } else { &b };
+    // The first place where a letter may be too many: of a doubled letter the first one.
+    let place = shortest - last.min(shortest);
     // Inside: neither the first nor one of the last two letters, which often tell a series.
     longest == shortest + 1
         && first + last >= shortest
-        && (1..longest - 2).contains(&first)
-        && more[first].is_alphabetic()
+        && (1..longest - 2).contains(&place)
+        && more[place].is_alphabetic()
 }
 
 #[cfg(test)]

@@ -108,13 +108,16 @@ impl Names {
         };
         let module = self.modules().find(around);
         let routine = module.and_then(|id| self.inside(id).find(around));
-        let in_routine = routine
-            .into_iter()
-            .flat_map(|id| self.inside(id))
-            .filter(|id| self.declaration(*id).kind != Kind::Counter || around(id));
+        let of_routine: Vec<DeclarationId> =
+            routine.into_iter().flat_map(|id| self.inside(id)).collect();
+        let (counters, others): (Vec<DeclarationId>, Vec<DeclarationId>) =
+            of_routine.into_iter().partition(|id| self.declaration(*id).kind == Kind::Counter);
+        // The innermost loop begins last.
+        let counters = counters.into_iter().rev().filter(around);
+        let in_routine = counters.chain(others);
         let in_module = module.into_iter().flat_map(|id| self.inside(id));
-        let others = self.modules().filter(|id| Some(*id) != module);
-        let global = others.flat_map(|id| self.inside(id));
+        let elsewhere = self.modules().filter(|id| Some(*id) != module);
+        let global = elsewhere.flat_map(|id| self.inside(id));
         let global = global.filter(|id| self.declaration(*id).reach != Reach::Local);
         let mut seen = std::collections::HashSet::new();
         let mut all: Vec<DeclarationId> = in_routine.chain(in_module).chain(global).collect();
