@@ -83,6 +83,8 @@ const NAMES: &[&str] = &[
     "PntProdUserLog SetBrush SetBrushFac ExecEngine PMgrAtSafe PMgrAtService PMgrAtState",
     "PMgrAtStation PMgrGetNextPart PMgrNextStation PMgrRunMenu PMgrSetNextPart PMgrTaskName",
     "PMgrTaskNumber",
+    // Mechanical units as RobotWare names them.
+    "ROB_1 ROB_2 ROB_3 ROB_4 ROB_L ROB_R",
     // Data.
     "USINT UINT UDINT ULINT SINT INT DINT LINT OPTIMAL_CYCLE_TIME_MODE LOW_SPEED_ACCURACY_MODE",
     "LOW_SPEED_STIFF_MODE ACCURACY_MODE TRIGG_MODE1 TRIGG_MODE2 TRIGG_MODE3 TOOL_LOAD_ID",

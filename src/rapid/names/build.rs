@@ -68,9 +68,8 @@ impl Names {
             if self.declarations[parent.0 as usize].kind != Kind::Module {
                 continue;
             }
-            if declaration.reach == Reach::Local {
-                self.local.entry((parent, declaration.key)).or_insert(id);
-            } else {
+            self.local.entry((parent, declaration.key)).or_insert(id);
+            if declaration.reach != Reach::Local {
                 self.global.insert_first(declaration.key, id);
             }
         }

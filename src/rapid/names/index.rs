@@ -15,6 +15,7 @@ pub struct Names {
     pub(super) declarations: Vec<Declaration>,
     /// The first declaration in each name's scope.
     pub(super) global: KeyMap<DeclarationId>,
+    /// The names of each module, LOCAL and global ones.
     pub(super) local: HashMap<(DeclarationId, Key), DeclarationId>,
     /// The identifiers of each file, in the order of the text.
     pub(super) uses: Vec<(FileId, Vec<Use>)>,

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use super::collect::Bytes;
-use super::declaration::{Basic, DeclarationId, Kind, Reach, ValueType};
+use super::declaration::{Basic, DeclarationId, Kind, ValueType};
 use super::index::Names;
 use super::keys::{Key, KeyMap, Spellings};
 use super::predefined::PREDEFINED;
@@ -57,7 +57,7 @@ struct Resolver<'n, 'a> {
     module: Option<DeclarationId>,
     /// The module of declarations outside modules.
     bare: Option<DeclarationId>,
-    /// The LOCAL names of the module.
+    /// The names of the module.
     local: KeyMap<DeclarationId>,
     /// The parameters and data of the routine.
     routine: KeyMap<DeclarationId>,
@@ -127,16 +127,14 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// Makes the LOCAL names of a module visible, and those of the module before invisible.
+    /// Prefers the names of a module to global ones of others. In a program that can be loaded this
+    /// matters for LOCAL names only; where files of several tasks are given together, for all.
     fn enter(&mut self, module: Option<DeclarationId>) {
         for id in self.module.into_iter().flat_map(|old| self.names.inside(old)) {
             self.local.remove(self.names.declaration(id).key);
         }
         for id in module.into_iter().flat_map(|new| self.names.inside(new)) {
-            let declaration = self.names.declaration(id);
-            if declaration.reach == Reach::Local {
-                self.local.insert_first(declaration.key, id);
-            }
+            self.local.insert_first(self.names.declaration(id).key, id);
         }
         self.module = module;
     }
