@@ -3,6 +3,7 @@
 //! - [`emit`], [`retrofit`], [`generate`]: RAPID text from streams, the main job, programs from points;
 //! - [`lint`]: wasted energy, with joules and fixes;
 //! - [`place`]: where frames should stand;
+//! - [`compare`]: what changed in meaning between two programs;
 //! - [`cell`]: the recorder in the cell, its logs, and what they prove;
 //! - [`suggest`]: changes that a person has to approve;
 //! - [`report`]: results as text, JSON and HTML;
@@ -14,6 +15,7 @@
 
 pub mod cell;
 pub mod cli;
+pub mod compare;
 pub mod config;
 pub mod emit;
 pub mod generate;

@@ -244,6 +244,11 @@ impl Instruction {
         positional(self.arguments).next()?.signal()
     }
 
+    /// The name of the positional parameter at this place, from 0.
+    pub fn parameter(&self, position: usize) -> Option<&'static str> {
+        positional(self.arguments).nth(position).map(|parameter| parameter.name)
+    }
+
     /// Whether it moves.
     pub fn is_movement(&self) -> bool {
         self.motion.is_some()

@@ -28,7 +28,7 @@ pub(super) const RUN_SIX_JOINTS: &str =
     "RAPID programs are run for robots with 6: name another with --robot";
 
 /// A program, its robot, and what is known of its cell.
-#[derive(Debug, Default, Args)]
+#[derive(Clone, Debug, Default, Args)]
 pub(super) struct CellArgs {
     /// Module files, folders, .pgf programs or controller backups.
     #[arg(required = true)]
@@ -262,7 +262,7 @@ pub(super) fn simulation_options(
 }
 
 /// Adds speed override, passes and maximum time to the options.
-fn with_overrides(args: &ProgramArgs, options: Options) -> anyhow::Result<Options> {
+pub(super) fn with_overrides(args: &ProgramArgs, options: Options) -> anyhow::Result<Options> {
     if let Some(percent) = args.speed_override.filter(|x| !(*x > 0.0 && *x <= 100.0)) {
         bail!("--speed-override {percent}: give a percentage above 0 and up to 100");
     }

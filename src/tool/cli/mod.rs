@@ -9,6 +9,7 @@ mod check;
 mod choice;
 mod common;
 mod diagnose;
+mod diff;
 mod excite;
 mod generate;
 mod identify;
@@ -59,6 +60,7 @@ enum Command {
     Parse(parse::ParseArgs),
     Check(check::CheckArgs),
     Lint(Box<lint::LintArgs>),
+    Diff(Box<diff::DiffArgs>),
     Rule(rule::RuleArgs),
     Simulate(simulate::SimulateArgs),
     #[command(alias = "optimise")]
@@ -90,6 +92,7 @@ pub fn command_line() -> ExitCode {
         Command::Parse(args) => parse::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Lint(args) => lint::run(&args),
+        Command::Diff(args) => diff::run(&args),
         Command::Rule(args) => rule::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Optimize(args) => optimize::run(&args),

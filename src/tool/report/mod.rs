@@ -3,6 +3,7 @@
 pub mod calibrate;
 pub mod campaign;
 pub mod check;
+pub mod comparison;
 pub mod diagnose;
 pub mod html;
 pub mod identify;

@@ -2,6 +2,7 @@
 //! resources.
 
 mod campaign;
+mod comparison;
 mod cycle_curve;
 mod diagnose;
 mod energy_time;
@@ -25,6 +26,7 @@ mod waits;
 mod ways;
 
 pub use campaign::campaign_report;
+pub use comparison::comparison_report;
 pub use diagnose::{Excerpt, Line, Pictures, diagnose_report};
 pub use grades::grades_report;
 pub use identify::{Traces, identify_report};
