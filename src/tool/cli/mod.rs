@@ -11,6 +11,7 @@ mod common;
 mod diagnose;
 mod diff;
 mod excite;
+mod format;
 mod generate;
 mod identify;
 mod input;
@@ -61,6 +62,7 @@ enum Command {
     Check(check::CheckArgs),
     Lint(Box<lint::LintArgs>),
     Diff(Box<diff::DiffArgs>),
+    Format(format::FormatArgs),
     Rule(rule::RuleArgs),
     Simulate(simulate::SimulateArgs),
     #[command(alias = "optimise")]
@@ -93,6 +95,7 @@ pub fn command_line() -> ExitCode {
         Command::Check(args) => check::run(&args),
         Command::Lint(args) => lint::run(&args),
         Command::Diff(args) => diff::run(&args),
+        Command::Format(args) => format::run(&args),
         Command::Rule(args) => rule::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Optimize(args) => optimize::run(&args),

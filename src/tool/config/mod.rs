@@ -1,8 +1,10 @@
 //! `joulepath.toml`: the permanent settings of a cell.
 
+mod format;
 mod idle;
 mod lint;
 
+pub use format::Format;
 pub use idle::Idle;
 pub use lint::Lint;
 
@@ -43,6 +45,9 @@ pub struct Config {
     /// The linter.
     #[serde(default)]
     pub lint: Lint,
+    /// The formatter.
+    #[serde(default)]
+    pub format: Format,
 }
 
 /// An obstacle in the robot's base frame, m.
@@ -71,7 +76,7 @@ pub enum ConfigError {
     /// Its content is wrong.
     #[error(
         "{path}: {reason}; known keys are robot, entry, takt_s, hours_per_year, spacing_s, [inputs], [assume], \
-         [idle.NAME] with power_w, wake_s and wake_j, [[keep_out]] with box or plane, and [lint]"
+         [idle.NAME] with power_w, wake_s and wake_j, [[keep_out]] with box or plane, [lint], and [format]"
     )]
     Wrong {
         /// Its path.
@@ -89,7 +94,8 @@ pub fn parse(path: &str, text: &str) -> Result<Config, ConfigError> {
     let wrong = |reason: String| ConfigError::Wrong { path: path.to_owned(), reason };
     let config: Config =
         toml::from_str(text).map_err(|error| wrong(error.to_string().trim().to_owned()))?;
-    match config.idle.iter().find_map(|(name, idle)| idle.fault(name)) {
+    let of_idle = config.idle.iter().find_map(|(name, idle)| idle.fault(name));
+    match of_idle.or_else(|| config.format.fault()) {
         Some(fault) => Err(wrong(fault)),
         None => Ok(config),
     }
@@ -114,6 +120,23 @@ mod tests {
                     [[keep_out]]\nplane = [1, 0, 0, -0.8]\n";
         let config = parse("joulepath.toml", text).expect("valid");
         assert_eq!(config.keep_out[1], KeepOut::Plane([1.0, 0.0, 0.0, -0.8]));
+    }
+
+    #[test]
+    fn styles_of_the_formatter_are_read_and_checked() {
+        use crate::rapid::format::{Indent, KeywordCase, Style};
+        let style = |text: &str| parse("joulepath.toml", text).expect("valid").format.style();
+        assert_eq!(style(""), Style::default());
+        let text = "[format]\nindent-width = 4\nkeyword-case = \"keep\"\nmax-blank-lines = 2";
+        let expected =
+            Style { indent: Indent::Spaces(4), keywords: KeywordCase::Keep, blank_lines: 2 };
+        assert_eq!(style(text), expected);
+        assert_eq!(style("[format]\nindent_style = \"tabs\"").indent, Indent::Tab);
+        for wrong in ["indent-width = 17", "max-blank-lines = 101", "indent = 2"] {
+            let error = parse("joulepath.toml", &format!("[format]\n{wrong}")).expect_err(wrong);
+            let key = wrong.split(' ').next().expect("a key");
+            assert!(error.to_string().contains(key), "{error}");
+        }
     }
 
     #[test]
