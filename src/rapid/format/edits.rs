@@ -96,8 +96,17 @@ impl<'f> Formatter<'f> {
         for index in 0..=self.words.len() {
             let place = self.gap(index);
             let old = self.old(index);
-            let is_kept = old.is_unusual() || self.protected.touches(&place);
-            let wanted = (!is_kept).then(|| self.wanted(index, old, line_end));
+            let head = old.before_last_line();
+            let is_kept = old.is_unusual()
+                || self.protected.touches(&(place.start + head as u32..place.end));
+            let wanted = (!is_kept).then(|| {
+                let new = self.wanted(index, old, line_end);
+                if head > 0 && self.protected.touches(&(place.start..place.start)) {
+                    // Behind a line that stays, only the indentation changes.
+                    return [&old.bytes()[..head], &new[Gap::new(&new).before_last_line()..]].concat();
+                }
+                new
+            });
             let text = wanted.as_deref().unwrap_or(old.bytes());
             let (lines, last) = (Gap::new(text).lines(), Gap::new(text).before_last_line());
             if lines > 0 {
@@ -179,8 +188,9 @@ impl<'f> Formatter<'f> {
             }
     }
 
-    /// Indentation of a comment on a line of its own: that of the statement behind it. Before a word
-    /// that ends a block, a comment further to the right than this word belongs to the block.
+    /// Indentation of a comment on a line of its own: that of the statement behind it, or of the block
+    /// that ends there. Before `ELSE` and the like, a comment further to the right than this word belongs
+    /// to the block before it.
     fn comment_steps(&self, index: usize) -> usize {
         let Some(next) = (index..self.words.len()).find(|next| !self.is_comment(*next)) else {
             return 0;
@@ -189,7 +199,8 @@ impl<'f> Formatter<'f> {
         let steps = usize::from(self.layout.steps[token]);
         match self.layout.starts[token] {
             Start::Inside => steps + 1,
-            Start::Line if ends_block(self.word(next).kind) => {
+            Start::Line if closes(self.word(next).kind) => steps + 1,
+            Start::Line if divides(self.word(next).kind) => {
                 let column = |index: usize| {
                     let gap = self.old(index);
                     gap.bytes().len() - gap.before_last_line()
@@ -213,7 +224,9 @@ impl<'f> Formatter<'f> {
             }
             let range = self.parse.tree.tokens().range(*token);
             // Behind a backslash it is the name of an argument.
-            let is_name = index > 0 && self.word(index - 1).kind == TokenKind::Backslash;
+            let before = (0..index).rev().find(|before| !self.is_comment(*before));
+            let is_name =
+                before.is_some_and(|before| self.word(before).kind == TokenKind::Backslash);
             let is_left = units.is_some_and(|units| !units.contains(index));
             if !is_name && !is_left && !self.protected.touches(&range) {
                 let span = Span { file: self.file.id, start: range.start, end: range.end };
@@ -224,15 +237,25 @@ impl<'f> Formatter<'f> {
     }
 }
 
-/// Words that end a block of statements.
-fn ends_block(kind: TokenKind) -> bool {
+/// Words that end one block of statements and begin another one.
+fn divides(kind: TokenKind) -> bool {
     matches!(
         kind,
         TokenKind::Else
             | TokenKind::ElseIf
             | TokenKind::Case
             | TokenKind::Default
-            | TokenKind::EndIf
+            | TokenKind::Backward
+            | TokenKind::Error
+            | TokenKind::Undo
+    )
+}
+
+/// Words that end a block of statements.
+fn closes(kind: TokenKind) -> bool {
+    matches!(
+        kind,
+        TokenKind::EndIf
             | TokenKind::EndFor
             | TokenKind::EndWhile
             | TokenKind::EndTest
@@ -241,8 +264,5 @@ fn ends_block(kind: TokenKind) -> bool {
             | TokenKind::EndTrap
             | TokenKind::EndRecord
             | TokenKind::EndModule
-            | TokenKind::Backward
-            | TokenKind::Error
-            | TokenKind::Undo
     )
 }

@@ -157,7 +157,10 @@ impl Walk<'_> {
     /// `IF condition statement`: the statement follows on the same line.
     fn compact(&mut self, node: Node<'_>, steps: usize) {
         let Some(statement) = node.children().nth(1) else { return };
+        // What continues the inner statement is indented further than it is on a line of its own.
+        self.fill(statement, steps + 1);
         self.inside(statement, steps);
+        self.begin(statement.range().start, steps, Start::Inside);
         let token = self.token(statement.range().start);
         if let Some(compact) = self.layout.compact.get_mut(token) {
             *compact = true;

@@ -14,7 +14,7 @@ pub struct Style {
 /// One step of indentation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Indent {
-    /// This many spaces.
+    /// This many spaces, at least one: a line that continues a statement has to be indented.
     Spaces(usize),
     /// A tab.
     Tab,
@@ -39,7 +39,7 @@ impl Style {
     /// The white space of this many steps.
     pub(super) fn indentation(&self, steps: usize) -> Vec<u8> {
         match self.indent {
-            Indent::Spaces(width) => vec![b' '; width * steps],
+            Indent::Spaces(width) => vec![b' '; width.max(1) * steps],
             Indent::Tab => vec![b'\t'; steps],
         }
     }

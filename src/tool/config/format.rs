@@ -68,8 +68,8 @@ impl Format {
 
     /// What is wrong with it, if anything.
     pub(super) fn fault(&self) -> Option<String> {
-        if let Some(width) = self.indent_width.filter(|width| *width > WIDEST) {
-            return Some(format!("[format]: indent-width = {width}: give 0 to {WIDEST} spaces"));
+        if let Some(width) = self.indent_width.filter(|width| !(1..=WIDEST).contains(width)) {
+            return Some(format!("[format]: indent-width = {width}: give 1 to {WIDEST} spaces"));
         }
         let lines = self.max_blank_lines.filter(|lines| *lines > MOST_BLANK_LINES)?;
         Some(format!("[format]: max-blank-lines = {lines}: give 0 to {MOST_BLANK_LINES}"))
