@@ -94,14 +94,25 @@ fn kept(parse: &Parse) -> Vec<std::ops::Range<u32>> {
 const GAPS: [&str; 10] =
     [" ", " ", "  ", "\t", "\n", "\r\n", "\n\n\n\n", " \t\n  ", " ! said \"here\"\n", "!\r\n  !x\n"];
 
+/// How lines are indented that continue a statement.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Continued {
+    /// At random. The parser takes the first argument of a call for a new statement if it is on a line
+    /// that is not indented further, so that the program may be another one.
+    Anyhow,
+    /// Further than the line before.
+    Further,
+}
+
 /// The same program with random white space, comments, and case of keywords.
-pub(crate) fn relaid(bytes: &[u8], random: &mut Random) -> Vec<u8> {
+pub(crate) fn relaid(bytes: &[u8], continued: Continued, random: &mut Random) -> Vec<u8> {
     let parse = syntax::parse(bytes);
     let kept = kept(&parse);
     let tokens = parse.tree.tokens();
     let mut out = Vec::new();
     let mut gap = false;
     let mut before = TokenKind::EndOfFile;
+    let mut column = 0;
     for index in 0..tokens.count() {
         let (kind, range) = (tokens.kind(index), tokens.range(index));
         let text = &bytes[range.start as usize..range.end as usize];
@@ -126,6 +137,16 @@ pub(crate) fn relaid(bytes: &[u8], random: &mut Random) -> Vec<u8> {
             out.extend(b"\n");
         } else if gap || random.below(6) == 0 && before != TokenKind::EndOfFile {
             out.extend(random.pick(&GAPS).bytes());
+            let is_inside = before != TokenKind::Semicolon && before != TokenKind::Colon;
+            let start = out.iter().rposition(|byte| matches!(byte, b'\n' | b'\r'));
+            if let Some(start) = start
+                && continued == Continued::Further
+                && out[start..].iter().all(u8::is_ascii_whitespace)
+            {
+                column = if is_inside { column + 3 } else { random.below(8) };
+                out.truncate(start + 1);
+                out.extend(vec![b' '; column]);
+            }
         }
         if kind.is_keyword() {
             out.extend(text.iter().map(|byte| match random.below(2) {

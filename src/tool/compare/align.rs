@@ -1,6 +1,6 @@
 //! Which statements of two routines correspond.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use similar::{Algorithm, DiffOp, capture_diff_slices};
 
@@ -64,9 +64,14 @@ impl Alignment {
         if old.is_empty() || new.is_empty() {
             return;
         }
-        if let Some(pairs) = edit_distance::pairs(old, new, MOST_STEPS) {
+        let wholes = once_in_both(old, new);
+        if let Some(pairs) = edit_distance::pairs(old, new, &wholes, MOST_STEPS) {
             for (old, new) in pairs {
-                self.pair(old, new);
+                if wholes.contains(&old.whole) {
+                    self.equal(old, new);
+                } else {
+                    self.pair(old.id, new.id);
+                }
             }
             return;
         }
@@ -165,6 +170,20 @@ impl Alignment {
             }
         }
     }
+}
+
+/// The trees of more than one node that stand exactly once on each side.
+fn once_in_both(old: &[&Node<'_>], new: &[&Node<'_>]) -> BTreeSet<u32> {
+    let once = |nodes: &[&Node<'_>]| -> BTreeSet<u32> {
+        let mut counts: BTreeMap<u32, usize> = BTreeMap::new();
+        for node in nodes.iter().flat_map(|node| node.subtree()) {
+            if !node.children.is_empty() {
+                *counts.entry(node.whole).or_default() += 1;
+            }
+        }
+        counts.into_iter().filter(|(_, count)| *count == 1).map(|(whole, _)| whole).collect()
+    };
+    once(old).intersection(&once(new)).copied().collect()
 }
 
 /// Whether neither the node nor anything below corresponds to a node of the other side.

@@ -14,7 +14,7 @@ pub(super) const DELETE: u32 = 10;
 /// Inserting a node.
 pub(super) const INSERT: u32 = 10;
 /// Two nodes that never correspond.
-const NEVER: u32 = DELETE + INSERT + 1;
+pub(super) const NEVER: u32 = DELETE + INSERT + 1;
 /// Another condition of a block.
 const CONDITION: u32 = 6;
 /// Another target, signal, or other first argument.

@@ -1,9 +1,12 @@
 //! The cheapest way to edit one ordered forest into another (Zhang and Shasha, 1989).
 //!
 //! Nodes are deleted, inserted or changed; a deleted node leaves its children where they are. So an
-//! `IF` around ten movements is one insertion.
+//! `IF` around ten movements is one insertion. A tree that stands once on both sides is one node: it is
+//! kept or moved as a whole.
 
-use super::cost::{DELETE, INSERT, change};
+use std::collections::BTreeSet;
+
+use super::cost::{DELETE, INSERT, NEVER, change};
 use super::node::Node;
 
 /// A forest in postorder, with a root that stands for the whole.
@@ -16,10 +19,10 @@ struct Postorder<'n, 'a> {
 }
 
 impl<'n, 'a> Postorder<'n, 'a> {
-    fn new(forest: &[&'n Node<'a>]) -> Postorder<'n, 'a> {
+    fn new(forest: &[&'n Node<'a>], wholes: &BTreeSet<u32>) -> Postorder<'n, 'a> {
         let mut order = Postorder { nodes: Vec::new(), leftmost: Vec::new(), keyroots: Vec::new() };
         for tree in forest {
-            order.visit(tree);
+            order.visit(tree, wholes);
         }
         order.leftmost.push(0);
         let mut taken = vec![false; order.leftmost.len()];
@@ -33,12 +36,14 @@ impl<'n, 'a> Postorder<'n, 'a> {
     }
 
     // The depth of statements is limited by the parser.
-    fn visit(&mut self, node: &'n Node<'a>) {
+    fn visit(&mut self, node: &'n Node<'a>, wholes: &BTreeSet<u32>) {
         let first = self.nodes.len();
-        for child in &node.children {
-            self.visit(child);
+        if !wholes.contains(&node.whole) {
+            for child in &node.children {
+                self.visit(child, wholes);
+            }
         }
-        let leftmost = if node.children.is_empty() { first } else { self.leftmost[first] };
+        let leftmost = if self.nodes.len() == first { first } else { self.leftmost[first] };
         self.nodes.push(node);
         self.leftmost.push(leftmost);
     }
@@ -50,23 +55,27 @@ impl<'n, 'a> Postorder<'n, 'a> {
 }
 
 /// Costs of the edits of all pairs of subtrees, row by row.
-struct Distances {
+struct Distances<'w> {
     columns: usize,
     trees: Vec<u32>,
+    wholes: &'w BTreeSet<u32>,
 }
 
 /// The pairs of nodes that correspond in the cheapest edit; `None` if it takes more than `most` steps.
-pub(super) fn pairs(
-    old: &[&Node<'_>],
-    new: &[&Node<'_>],
+/// The trees with the numbers `wholes` are nodes without anything below.
+pub(super) fn pairs<'n, 'a>(
+    old: &[&'n Node<'a>],
+    new: &[&'n Node<'a>],
+    wholes: &BTreeSet<u32>,
     most: u64,
-) -> Option<Vec<(usize, usize)>> {
-    let (old, new) = (Postorder::new(old), Postorder::new(new));
+) -> Option<Vec<(&'n Node<'a>, &'n Node<'a>)>> {
+    let (old, new) = (Postorder::new(old, wholes), Postorder::new(new, wholes));
     if old.work().saturating_mul(new.work()) > most {
         return None;
     }
     let columns = new.leftmost.len();
-    let mut distances = Distances { columns, trees: vec![0; old.leftmost.len() * columns] };
+    let trees = vec![0; old.leftmost.len() * columns];
+    let mut distances = Distances { columns, trees, wholes };
     for i in &old.keyroots {
         for j in &new.keyroots {
             distances.forest(&old, &new, *i, *j);
@@ -80,7 +89,7 @@ pub(super) fn pairs(
     Some(found)
 }
 
-impl Distances {
+impl Distances<'_> {
     fn tree(&self, i: usize, j: usize) -> u32 {
         self.trees[i * self.columns + j]
     }
@@ -111,7 +120,7 @@ impl Distances {
                 let insert = cost[row * columns + column - 1] + INSERT;
                 let whole = old.leftmost[a] == first_i && new.leftmost[b] == first_j;
                 let both = if whole {
-                    cost[(row - 1) * columns + column - 1] + replaced(old, new, a, b)
+                    cost[(row - 1) * columns + column - 1] + self.replaced(old, new, a, b)
                 } else {
                     let (before_a, before_b) = (old.leftmost[a] - first_i, new.leftmost[b] - first_j);
                     cost[before_a * columns + before_b] + self.tree(a, b)
@@ -127,13 +136,13 @@ impl Distances {
     }
 
     /// Adds the pairs of the cheapest edit of two subtrees, and the smaller subtrees that remain.
-    fn trace(
+    fn trace<'n, 'a>(
         &mut self,
-        old: &Postorder<'_, '_>,
-        new: &Postorder<'_, '_>,
+        old: &Postorder<'n, 'a>,
+        new: &Postorder<'n, 'a>,
         i: usize,
         j: usize,
-        found: &mut Vec<(usize, usize)>,
+        found: &mut Vec<(&'n Node<'a>, &'n Node<'a>)>,
         open: &mut Vec<(usize, usize)>,
     ) {
         let cost = self.forest(old, new, i, j);
@@ -144,9 +153,9 @@ impl Distances {
             let (a, b) = (first_i + row - 1, first_j + column - 1);
             let here = cost[row * columns + column];
             let whole = old.leftmost[a] == first_i && new.leftmost[b] == first_j;
-            if whole && here == cost[(row - 1) * columns + column - 1] + replaced(old, new, a, b) {
+            if whole && here == cost[(row - 1) * columns + column - 1] + self.replaced(old, new, a, b) {
                 if let (Some(a), Some(b)) = (old.nodes.get(a), new.nodes.get(b)) {
-                    found.push((a.id, b.id));
+                    found.push((*a, *b));
                 }
                 (row, column) = (row - 1, column - 1);
                 continue;
@@ -162,13 +171,19 @@ impl Distances {
             }
         }
     }
-}
 
-/// The cost of making the node at `b` of the node at `a`; the roots correspond to each other.
-fn replaced(old: &Postorder<'_, '_>, new: &Postorder<'_, '_>, a: usize, b: usize) -> u32 {
-    match (old.nodes.get(a), new.nodes.get(b)) {
-        (Some(old), Some(new)) => change(old, new),
-        (None, None) => 0,
-        _ => DELETE + INSERT + 1,
+    /// The cost of making the node at `b` of the node at `a`; the roots correspond to each other.
+    fn replaced(&self, old: &Postorder<'_, '_>, new: &Postorder<'_, '_>, a: usize, b: usize) -> u32 {
+        match (old.nodes.get(a), new.nodes.get(b)) {
+            (Some(old), Some(new)) if old.whole == new.whole => 0,
+            (Some(old), Some(new))
+                if self.wholes.contains(&old.whole) || self.wholes.contains(&new.whole) =>
+            {
+                NEVER
+            }
+            (Some(old), Some(new)) => change(old, new),
+            (None, None) => 0,
+            _ => NEVER,
+        }
     }
 }

@@ -29,7 +29,12 @@ pub(super) fn same(a: f64, b: f64) -> bool {
 /// always for no others.
 pub(super) fn coarse(x: f64) -> String {
     let least = *DIGITS.start();
-    let x = if x.fract() == 0.0 { x } else { rounded(x, least) };
+    let stored = f64::from(x as f32);
+    let x = match stored {
+        _ if x.fract() == 0.0 => x,
+        stored if stored.is_finite() => rounded(stored, least),
+        _ => rounded(x, least),
+    };
     match x {
         // The usual form of an external axis that does not exist.
         9e9 => "9E9".to_owned(),

@@ -64,7 +64,11 @@ struct List<'l> {
 
 impl List<'_> {
     fn add(&mut self, order: Order, module: &str, routine: Option<&str>, found: Found) {
-        let Found { subject, action, spans: [old, new], message, differences } = found;
+        let Found { subject, action, spans: [old, new], mut message, differences } = found;
+        if message.trim().is_empty() {
+            // Something is missing in the text.
+            message = "without a name".to_owned();
+        }
         let change = Change {
             subject,
             action,
@@ -129,28 +133,29 @@ impl List<'_> {
 
     fn types(&mut self, order: usize, old: &Module, new: &Module) {
         let name = new.name.text.as_str();
-        let find = |list: &'_ [TypeDef], key: &str| list.iter().position(|def| def.name.key == key);
+        let mut free: Vec<&TypeDef> = new.types.iter().collect();
+        let mut left: Vec<&TypeDef> = Vec::new();
         for before in &old.types {
-            let found = match find(&new.types, &before.name.key) {
-                None => {
-                    let spans = [Some(before.name.span), None];
-                    plain(Subject::Type, Action::Removed, spans, before.name.text.clone())
-                }
-                Some(at) => {
-                    let after = &new.types[at];
-                    let [from, to] = [before, after].map(type_text);
-                    if from == to {
-                        continue;
-                    }
-                    let spans = [Some(before.name.span), Some(after.name.span)];
-                    plain(Subject::Type, Action::Changed, spans, format!("{from} → {to}"))
-                }
-            };
-            self.add((order, 1, 0, 0), name, None, found);
+            match free.iter().position(|after| type_text(after) == type_text(before)) {
+                Some(at) => drop(free.remove(at)),
+                None => left.push(before),
+            }
         }
-        for after in new.types.iter().filter(|after| find(&old.types, &after.name.key).is_none()) {
+        for before in left {
+            let at = free.iter().position(|after| after.name.key == before.name.key);
+            let after = at.map(|at| free.remove(at));
+            let (action, message) = match after {
+                Some(after) => {
+                    (Action::Changed, format!("{} → {}", type_text(before), type_text(after)))
+                }
+                None => (Action::Removed, type_text(before)),
+            };
+            let spans = [Some(before.name.span), after.map(|after| after.name.span)];
+            self.add((order, 1, 0, 0), name, None, plain(Subject::Type, action, spans, message));
+        }
+        for after in free {
             let spans = [None, Some(after.name.span)];
-            let found = plain(Subject::Type, Action::Added, spans, after.name.text.clone());
+            let found = plain(Subject::Type, Action::Added, spans, type_text(after));
             self.add((order, 1, 0, 1), name, None, found);
         }
     }
