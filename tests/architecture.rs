@@ -14,12 +14,13 @@ use rust_source::tokens::tokens;
 const MIN_TERMS: usize = 40;
 
 /// Pages for users and contributors.
-const PAGES: [&str; 20] = [
+const PAGES: [&str; 21] = [
     "README.md",
     "CONTRIBUTING.md",
     "docs/architecture.md",
     "docs/blind.md",
     "docs/cell.md",
+    "docs/changes.md",
     "docs/check.md",
     "docs/controller.md",
     "docs/effects.md",

@@ -7,7 +7,7 @@ mod layouts;
 use std::ops::Range;
 use std::path::PathBuf;
 
-use joulepath::rapid::builtins::{self, instruction};
+use joulepath::rapid::builtins::{self, Instruction, instruction};
 use joulepath::rapid::syntax::{self, Node, NodeKind, TokenKind};
 use joulepath::rapid::text::{SourceFile, is_encoded_module};
 use joulepath::tool::compare::{
@@ -86,25 +86,73 @@ fn edited(from: &str, to: &str) -> Vec<String> {
 #[test]
 fn each_kind_of_change_is_one_line() {
     let table: &[(&str, &str, &[&str])] = &[
-        ("[600,100,600]", "[600,112.5,600]", &["- changed target: p20 moved by 12.5 mm (y +12.5), used 2 times"]),
+        (
+            "[600,100,600]",
+            "[600,112.5,600]",
+            &["- changed target: p20 moved by 12.5 mm (y +12.5), used 2 times"],
+        ),
         (
             "[600,100,600],[0,0,1,0],[0,0,0,0]",
             "[603,104,600],[0,0,0.9961947,0.0871557],[0,-1,0,0]",
             &["- changed target: p20 moved by 5 mm (x +3, y +4); turned by 10°; configuration \
                [0,0,0,0] → [0,-1,0,0], used 2 times"],
         ),
-        ("[0,-12,14,0,90,0]", "[0,-2,14,0,45,0]", &["- changed target: jHome axis 2 by +10°, axis 5 by −45°, used 2 times"]),
+        (
+            "[0,-12,14,0,90,0]",
+            "[0,-2,14,0,45,0]",
+            &["- changed target: jHome axis 2 by +10°, axis 5 by −45°, used 2 times"],
+        ),
         ("[1500,500,", "[800,500,", &["- changed speed: vFast v_tcp 1500 → 800"]),
-        ("[2,[0,0,60]", "[3.5,[0,0,60]", &["- changed tool: tGrip tload.mass 2 → 3.5, used 4 times"]),
-        ("[[400,0,0]", "[[400,7,0]", &["- changed work_object: wTable uframe.trans moved by 7 mm (y +7), used 4 times"]),
-        ("p20,v200", "p20,v150", &["rPick changed speed: MoveL p20: speed v200 → v150 (v_tcp 200 → 150)"]),
+        (
+            "[2,[0,0,60]",
+            "[3.5,[0,0,60]",
+            &["- changed tool: tGrip tload.mass 2 → 3.5, used 4 times"],
+        ),
+        (
+            "[[400,0,0]",
+            "[[400,7,0]",
+            &["- changed work_object: wTable uframe.trans moved by 7 mm (y +7), used 4 times"],
+        ),
+        (
+            "p20,v200",
+            "p20,v150",
+            &["rPick changed speed: MoveL p20: speed v200 → v150 (v_tcp 200 → 150)"],
+        ),
         ("v200,fine", "v200\\T:=2,fine", &["rPick changed speed: MoveL p20: \\t none → 2"]),
-        ("fine,tGrip", "z5,tGrip", &["rPick changed zone: MoveL p20: zone fine → z5 (finep TRUE → FALSE; pzone_tcp 0 → 5; pzone_ori 0 → 8; pzone_eax 0 → 8; zone_ori 0 → 0.8; zone_leax 0 → 8; zone_reax 0 → 0.8)"]),
-        ("fine,tGrip", "fine,tool0", &["rPick changed tool: MoveL p20: tool tGrip → tool0 (tframe.trans moved by 150 mm (z −150); tload.mass 2 → 0.001; tload.cog moved by 59.999 mm (z −59.999))"]),
-        ("z50,tGrip\\WObj:=wTable", "z50,tGrip", &["rPick changed work_object: MoveJ p10: work object wTable → none"]),
+        (
+            "fine,tGrip",
+            "z5,tGrip",
+            &[
+                "rPick changed zone: MoveL p20: zone fine → z5 (finep TRUE → FALSE; pzone_tcp 0 → 5; pzone_ori 0 → 8; pzone_eax 0 → 8; zone_ori 0 → 0.8; zone_leax 0 → 8; zone_reax 0 → 0.8)",
+            ],
+        ),
+        (
+            "fine,tGrip",
+            "fine,tool0",
+            &[
+                "rPick changed tool: MoveL p20: tool tGrip → tool0 (tframe.trans moved by 150 mm (z −150); tload.mass 2 → 0.001; tload.cog moved by 59.999 mm (z −59.999))",
+            ],
+        ),
+        (
+            "z50,tGrip\\WObj:=wTable",
+            "z50,tGrip",
+            &["rPick changed work_object: MoveJ p10: work object wTable → none"],
+        ),
         ("MoveJ p10", "MoveL p10", &["rPick changed movement: MoveL p10: MoveJ → MoveL"]),
-        ("Offs(p20,0,0,10*i)", "Offs(p20,0,0,12*i)", &["main changed target: MoveL Offs(p20,0,0,12*i): target Offs(p20,0,0,10*i) → Offs(p20,0,0,12*i)"]),
-        ("MoveJ p10", "MoveJ p20", &["rPick changed target: MoveJ p20: target p10 → p20 (moved by 141.421 mm (x +100, y +100))"]),
+        (
+            "Offs(p20,0,0,10*i)",
+            "Offs(p20,0,0,12*i)",
+            &[
+                "main changed target: MoveL Offs(p20,0,0,12*i): target Offs(p20,0,0,10*i) → Offs(p20,0,0,12*i)",
+            ],
+        ),
+        (
+            "MoveJ p10",
+            "MoveJ p20",
+            &[
+                "rPick changed target: MoveJ p20: target p10 → p20 (moved by 141.421 mm (x +100, y +100))",
+            ],
+        ),
         ("WaitTime 0.5", "WaitTime 1.5", &["rPick changed wait: WaitTime 1.5: Time 0.5 → 1.5"]),
         ("diPart,1", "diPart,0", &["rPick changed input: WaitDI diPart: Value 1 → 0"]),
         ("doLamp,1", "doLamp,0", &["rPick changed output: SetDO doLamp: Value 1 → 0"]),
@@ -113,11 +161,23 @@ fn each_kind_of_change_is_one_line() {
         ("nRow:=nRow+1", "nRow:=nRow+2", &["main changed data: nRow := nRow+1 → nRow+2"]),
         ("TO 3", "TO 4", &["main changed control_flow: FOR i FROM 1 TO 3 → FOR i FROM 1 TO 4"]),
         ("    Set doGrip;\n", "", &["rPick removed output: Set doGrip"]),
-        ("    Set doGrip;\n", "    Set doGrip;\n    MoveL p10,v5,fine,tGrip;\n", &["rPick added movement: MoveL p10,v5,fine,tGrip"]),
+        (
+            "    Set doGrip;\n",
+            "    Set doGrip;\n    MoveL p10,v5,fine,tGrip;\n",
+            &["rPick added movement: MoveL p10,v5,fine,tGrip"],
+        ),
         ("    rPick;\n", "    rPlace;\n", &["main changed call: rPick → rPlace"]),
         ("VAR num nRow:=0", "VAR num nRow:=1", &["- changed data: nRow 0 → 1, used 2 times"]),
-        ("VAR num nRow", "PERS num nRow", &["- changed data: nRow: VAR num → PERS num, used 2 times"]),
-        ("PROC rPick()", "PROC rPick(\\switch s)", &["rPick changed routine: PROC( ) → PROC( \\ switch s )"]),
+        (
+            "VAR num nRow",
+            "PERS num nRow",
+            &["- changed data: nRow: VAR num → PERS num, used 2 times"],
+        ),
+        (
+            "PROC rPick()",
+            "PROC rPick(\\switch s)",
+            &["rPick changed routine: PROC( ) → PROC( \\ switch s )"],
+        ),
         (
             "    Set doGrip;\n    WaitTime 0.5;\n",
             "    WaitTime 0.5;\n    Set doGrip;\n",
@@ -131,15 +191,19 @@ fn each_kind_of_change_is_one_line() {
             assert_eq!(found.len(), 1, "{found:?}");
             continue;
         }
-        let moved = found.len() == 1 && found[0].contains(" moved ") && expected[0].contains(" moved ");
-        assert!(found == *expected || moved && from.contains("WaitTime"), "{from}\n{found:#?}\n{expected:#?}");
+        let moved =
+            found.len() == 1 && found[0].contains(" moved ") && expected[0].contains(" moved ");
+        assert!(
+            found == *expected || moved && from.contains("WaitTime"),
+            "{from}\n{found:#?}\n{expected:#?}"
+        );
     }
 }
 
 #[test]
 fn a_block_around_statements_is_one_change() {
-    let movements: String =
-        (1..=10).map(|i| format!("MoveL Offs(p10,0,0,{i}),v100,z1,tGrip;\n")).collect();
+    let movement = |i: i32| format!("MoveL Offs(p10,0,0,{i}),v100,z1,tGrip;\n");
+    let movements = (1..=10).map(movement).collect::<Vec<_>>().concat();
     let program = |body: &str| {
         format!("MODULE m\nPROC main()\nSet do1;\n{body}\nReset do1;\nENDPROC\nENDMODULE\n")
     };
@@ -222,7 +286,9 @@ fn what_cannot_be_read_is_compared_by_its_words() {
 
 #[test]
 fn latin_1_and_utf_8_are_the_same_text() {
-    let text = CELL.replace("nRow", "nGröße").replace("doLamp,1", "doLamp,1;\nTPWrite \"Fertig für Öl: prüfen\"");
+    let text = CELL
+        .replace("nRow", "nGröße")
+        .replace("doLamp,1", "doLamp,1;\nTPWrite \"Fertig für Öl: prüfen\"");
     let (latin, _, lossy) = encoding_rs::WINDOWS_1252.encode(&text);
     assert!(!lossy);
     assert!(compared(latin.into_owned(), text).changes.is_empty());
@@ -258,7 +324,9 @@ fn resaved(bytes: &[u8], random: &mut Random) -> Vec<u8> {
                     edits.push((range(*slot), changed(bytes, data[from], random)));
                 }
             }
-            NodeKind::Header => edits.push((range(node), b"%%%\n VERSION:2\n LANGUAGE:GERMAN\n%%%".to_vec())),
+            NodeKind::Header => {
+                edits.push((range(node), b"%%%\n VERSION:2\n LANGUAGE:GERMAN\n%%%".to_vec()));
+            }
             _ => {}
         }
     }
@@ -284,7 +352,8 @@ fn resaved(bytes: &[u8], random: &mut Random) -> Vec<u8> {
 fn changed(bytes: &[u8], data: Node<'_>, random: &mut Random) -> Vec<u8> {
     let text = data.text(bytes).to_vec();
     let is_pers = data.own_token(TokenKind::Pers).is_some();
-    let type_name = data.child(NodeKind::TypeName).map(|node| node.text(bytes).to_ascii_lowercase());
+    let type_name =
+        data.child(NodeKind::TypeName).map(|node| node.text(bytes).to_ascii_lowercase());
     let value = data.children().filter(|child| child.kind().is_value()).last();
     if let (true, Some(b"num"), Some(value)) = (is_pers, type_name.as_deref(), value)
         && value.kind() == NodeKind::NumberLiteral
@@ -354,11 +423,15 @@ fn edits(bytes: &[u8], kind: usize) -> Vec<Edit> {
             // Another place of a taught position.
             (0, NodeKind::DataDeclaration) => {
                 let of = node.child(NodeKind::TypeName).unwrap().text(bytes).to_ascii_lowercase();
-                let value = node.children().filter(|child| child.kind() == NodeKind::Aggregate).last();
-                let numbers = value.into_iter().flat_map(Node::subtree);
-                let first = numbers.filter(|n| n.kind() == NodeKind::NumberLiteral).next();
+                let value =
+                    node.children().filter(|child| child.kind() == NodeKind::Aggregate).last();
+                let mut numbers = value.into_iter().flat_map(Node::subtree);
+                let first = numbers.find(|n| n.kind() == NodeKind::NumberLiteral);
                 let is_plain = node.child(NodeKind::Dimensions).is_none();
-                if of == b"robtarget" && is_plain && let Some(first) = first {
+                if of == b"robtarget"
+                    && is_plain
+                    && let Some(first) = first
+                {
                     let old: f64 = String::from_utf8_lossy(first.text(bytes)).parse().unwrap();
                     let is_negative = bytes[..range(first).start].ends_with(b"-");
                     let text = format!("{}", old + 1.5);
@@ -368,8 +441,12 @@ fn edits(bytes: &[u8], kind: usize) -> Vec<Edit> {
             }
             // Speeds, zones, tools of movements; waits; outputs.
             (1..=3, NodeKind::CallStatement) => {
-                let name = node.callee().map(|name| String::from_utf8_lossy(name.text(bytes)).to_lowercase());
-                let Some(signature) = name.as_deref().and_then(builtins::movement) else { continue };
+                let name = node
+                    .callee()
+                    .map(|name| String::from_utf8_lossy(name.text(bytes)).to_lowercase());
+                let Some(signature) = name.as_deref().and_then(builtins::movement) else {
+                    continue;
+                };
                 let values: Vec<Node<'_>> =
                     node.children().skip(1).filter(|child| child.kind().is_value()).collect();
                 let circular = usize::from(signature.form == builtins::MoveForm::Circular);
@@ -379,7 +456,9 @@ fn edits(bytes: &[u8], kind: usize) -> Vec<Edit> {
                 let (at, text, subject) = match kind {
                     1 => (speed, "[123,456,789,12]", "speed"),
                     2 if signature.zone => (zone, "zOther", "zone"),
-                    3 if signature.form != builtins::MoveForm::ExternalJoint => (tool, "tOther", "tool"),
+                    3 if signature.form != builtins::MoveForm::ExternalJoint => {
+                        (tool, "tOther", "tool")
+                    }
                     _ => continue,
                 };
                 if let Some(value) = values.get(at) {
@@ -387,9 +466,13 @@ fn edits(bytes: &[u8], kind: usize) -> Vec<Edit> {
                 }
             }
             (4, NodeKind::CallStatement) => {
-                let name = node.callee().map(|name| String::from_utf8_lossy(name.text(bytes)).to_lowercase());
-                let waits = name.as_deref().and_then(instruction).is_some_and(|i| i.waits_for_time());
-                let value = node.children().skip(1).find(|child| child.kind() == NodeKind::NumberLiteral);
+                let name = node
+                    .callee()
+                    .map(|name| String::from_utf8_lossy(name.text(bytes)).to_lowercase());
+                let waits =
+                    name.as_deref().and_then(instruction).is_some_and(Instruction::waits_for_time);
+                let value =
+                    node.children().skip(1).find(|child| child.kind() == NodeKind::NumberLiteral);
                 if waits && let Some(value) = value {
                     found.push(change(range(value), "47.25", "wait"));
                 }
@@ -445,7 +528,10 @@ fn edits(bytes: &[u8], kind: usize) -> Vec<Edit> {
 
 fn words(text: &[u8]) -> Vec<u8> {
     let words = layouts::words(text).into_iter();
-    words.filter(|(kind, _)| *kind != TokenKind::Comment).flat_map(|(_, text)| text.to_ascii_lowercase()).collect()
+    words
+        .filter(|(kind, _)| *kind != TokenKind::Comment)
+        .flat_map(|(_, text)| text.to_ascii_lowercase())
+        .collect()
 }
 
 fn clean() -> Vec<PathBuf> {

@@ -151,7 +151,8 @@ fn what_would_become_another_token_keeps_its_blank() {
 
 #[test]
 fn a_range_formats_whole_statements_and_nothing_else() {
-    let before = "MODULE m\nproc p()\n\n\n\n   x := 1 ;  y:=2 ;   ! two\nz :=   3;\nENDPROC\nENDMODULE\n";
+    let before =
+        "MODULE m\nproc p()\n\n\n\n   x := 1 ;  y:=2 ;   ! two\nz :=   3;\nENDPROC\nENDMODULE\n";
     let at = |text: &str| before.find(text).unwrap() as u32;
     let part = |range: std::ops::Range<u32>| {
         let source = file(before);

@@ -40,6 +40,7 @@ const WINGS: [Wing; 7] = [
             room("text", &[]),
             room("syntax", &["text"]),
             room("diagnostics", &["text"]),
+            room("format", &["text", "syntax"]),
             room("builtins", &[]),
             room("names", &["text", "syntax", "builtins"]),
             room("check", &["text", "syntax", "diagnostics", "builtins", "names"]),
@@ -93,12 +94,13 @@ const WINGS: [Wing; 7] = [
             room("place", &["rapid", "arm", "retime", "retrofit", "lint"]),
             room("suggest", &["rapid", "arm", "retime", "retrofit", "lint"]),
             room("cell", &["rapid", "arm", "retime", "log", "emit", "retrofit"]),
-            room("config", &["lint"]),
+            room("compare", &["rapid", "robot", "motion", "energy"]),
+            room("config", &["format", "lint"]),
             room(
                 "report",
                 &[
                     "rapid", "arm", "retime", "learn", "gap", "examine", "retrofit", "lint",
-                    "place", "suggest", "cell",
+                    "place", "suggest", "cell", "compare",
                 ],
             ),
             room("lsp", &["rapid", "arm", "retime", "lint"]),
@@ -106,7 +108,8 @@ const WINGS: [Wing; 7] = [
                 "cli",
                 &[
                     "rapid", "arm", "retime", "learn", "gap", "examine", "emit", "retrofit",
-                    "generate", "lint", "place", "suggest", "cell", "config", "report", "lsp",
+                    "generate", "lint", "place", "suggest", "cell", "compare", "config", "report",
+                    "lsp",
                 ],
             ),
         ],

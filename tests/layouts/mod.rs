@@ -84,15 +84,24 @@ pub(crate) fn words(bytes: &[u8]) -> Vec<(TokenKind, Vec<u8>)> {
 
 /// The bytes whose white space has a meaning: headers, and text outside of modules.
 fn kept(parse: &Parse) -> Vec<std::ops::Range<u32>> {
-    let is_kept = |kind| {
-        matches!(kind, NodeKind::Header | NodeKind::OutsideText | NodeKind::EncodedModule)
-    };
-    parse.tree.nodes().filter(|node| is_kept(node.kind())).map(|node| node.range()).collect()
+    let is_kept =
+        |kind| matches!(kind, NodeKind::Header | NodeKind::OutsideText | NodeKind::EncodedModule);
+    parse.tree.nodes().filter(|node| is_kept(node.kind())).map(syntax::Node::range).collect()
 }
 
 /// White space and comments that may stand between two tokens.
-const GAPS: [&str; 10] =
-    [" ", " ", "  ", "\t", "\n", "\r\n", "\n\n\n\n", " \t\n  ", " ! said \"here\"\n", "!\r\n  !x\n"];
+const GAPS: [&str; 10] = [
+    " ",
+    " ",
+    "  ",
+    "\t",
+    "\n",
+    "\r\n",
+    "\n\n\n\n",
+    " \t\n  ",
+    " ! said \"here\"\n",
+    "!\r\n  !x\n",
+];
 
 /// How lines are indented that continue a statement.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -116,7 +125,8 @@ pub(crate) fn relaid(bytes: &[u8], continued: Continued, random: &mut Random) ->
     for index in 0..tokens.count() {
         let (kind, range) = (tokens.kind(index), tokens.range(index));
         let text = &bytes[range.start as usize..range.end as usize];
-        let inside = |place: &std::ops::Range<u32>| place.start < range.end && range.start < place.end;
+        let inside =
+            |place: &std::ops::Range<u32>| place.start < range.end && range.start < place.end;
         if kept.iter().any(inside) {
             if gap && !out.is_empty() {
                 out.push(b'\n');

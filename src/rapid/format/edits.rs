@@ -21,15 +21,14 @@ pub(super) fn edits(
     range: Option<&Range<u32>>,
 ) -> Vec<Edit> {
     let tokens = parse.tree.tokens();
-    let words: Vec<usize> = (0..tokens.count())
-        .filter(|index| tokens.kind(*index) != TokenKind::Whitespace)
-        .collect();
+    let words: Vec<usize> =
+        (0..tokens.count()).filter(|index| tokens.kind(*index) != TokenKind::Whitespace).collect();
     let layout = Layout::new(&parse.tree);
     let formatter = Formatter { file, parse, style, protected, layout, words };
     let gaps = formatter.gaps();
     let is_first = |index: usize| index == 0 || formatter.old(index).lines() > 0;
-    let units = range
-        .map(|range| Units::new(&formatter.words, &formatter.layout, tokens, range, is_first));
+    let units =
+        range.map(|range| Units::new(&formatter.words, &formatter.layout, tokens, range, is_first));
     let mut edits = formatter.keywords(units.as_ref());
     for (index, wanted) in gaps.into_iter().enumerate() {
         let Some(wanted) = wanted else { continue };
@@ -97,13 +96,14 @@ impl<'f> Formatter<'f> {
             let place = self.gap(index);
             let old = self.old(index);
             let head = old.before_last_line();
-            let is_kept = old.is_unusual()
-                || self.protected.touches(&(place.start + head as u32..place.end));
+            let is_kept =
+                old.is_unusual() || self.protected.touches(&(place.start + head as u32..place.end));
             let wanted = (!is_kept).then(|| {
                 let new = self.wanted(index, old, line_end);
                 if head > 0 && self.protected.touches(&(place.start..place.start)) {
                     // Behind a line that stays, only the indentation changes.
-                    return [&old.bytes()[..head], &new[Gap::new(&new).before_last_line()..]].concat();
+                    return [&old.bytes()[..head], &new[Gap::new(&new).before_last_line()..]]
+                        .concat();
                 }
                 new
             });

@@ -33,26 +33,23 @@ pub fn format(file: &SourceFile, style: &Style) -> Vec<Edit> {
 /// no others.
 #[must_use]
 pub fn format_range(file: &SourceFile, range: Range<u32>, style: &Style) -> Vec<Edit> {
-    checked(file, style, Some(range))
+    checked(file, style, Some(&range))
 }
 
-fn checked(file: &SourceFile, style: &Style, range: Option<Range<u32>>) -> Vec<Edit> {
+fn checked(file: &SourceFile, style: &Style, range: Option<&Range<u32>>) -> Vec<Edit> {
     let parse = syntax::parse(&file.bytes);
     let attempt = |protected: &Protected| {
-        let edits = edits(file, &parse, style, protected, range.as_ref());
+        let edits = edits(file, &parse, style, protected, range);
         reads_the_same(file, &parse, &edits).then_some(edits)
     };
     let lines = Protected::lines(file, &parse);
     // Recovery from an error looks at lines and columns: the rest of a routine with an error can have
     // another meaning with another layout.
-    attempt(&lines)
-        .or_else(|| attempt(&lines.with_declarations(file, &parse)))
-        .unwrap_or_default()
+    attempt(&lines).or_else(|| attempt(&lines.with_declarations(file, &parse))).unwrap_or_default()
 }
 
 fn reads_the_same(file: &SourceFile, parse: &Parse, edits: &[Edit]) -> bool {
     edits.is_empty()
-        || apply(&file.bytes, edits).is_ok_and(|bytes| {
-            is_same(&file.bytes, parse, &bytes, &syntax::parse(&bytes))
-        })
+        || apply(&file.bytes, edits)
+            .is_ok_and(|bytes| is_same(&file.bytes, parse, &bytes, &syntax::parse(&bytes)))
 }

@@ -44,13 +44,23 @@ pub(super) fn blank(before: Word<'_>, after: Word<'_>, there: bool) -> bool {
     }
     if matches!(
         b,
-        Semicolon | Comma | RightParen | RightBracket | RightBrace | Dot | Backslash | Bar | Question
-            | Colon | Assign | LeftBrace
+        Semicolon
+            | Comma
+            | RightParen
+            | RightBracket
+            | RightBrace
+            | Dot
+            | Backslash
+            | Bar
+            | Question
+            | Colon
+            | Assign
+            | LeftBrace
     ) {
         return false;
     }
     if is_reserved(a) || is_reserved(b) {
-        return !matches!(a, Comma | Assign) && !(is_operator(a) && !is_closing(a));
+        return !matches!(a, Comma | Assign) && !is_operator(a);
     }
     if is_closing(a) && (is_word(b) || b == TokenKind::String) {
         return true;

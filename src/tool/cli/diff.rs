@@ -118,9 +118,9 @@ fn sides(args: &DiffArgs) -> anyhow::Result<[Named; 2]> {
         (Some(revision), [path]) => of_working_tree(revision, path),
         (Some(_), _) => bail!("--git REV compares one path with itself at that revision: name one"),
         (None, [old, new]) => named(old, new),
-        (None, _) => bail!(
-            "diff compares two programs: name the old and the new one, or one with --git REV"
-        ),
+        (None, _) => {
+            bail!("diff compares two programs: name the old and the new one, or one with --git REV")
+        }
     }
 }
 

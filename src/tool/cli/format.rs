@@ -48,11 +48,8 @@ pub(super) struct FormatArgs {
 pub(super) fn run(args: &FormatArgs) -> anyhow::Result<ExitCode> {
     let input = input::read(&args.paths)?;
     common::note_unreadable(args.quiet, &input);
-    let cell = CellArgs {
-        paths: args.paths.clone(),
-        config: args.config.clone(),
-        ..CellArgs::default()
-    };
+    let cell =
+        CellArgs { paths: args.paths.clone(), config: args.config.clone(), ..CellArgs::default() };
     let (config, _) = common::configuration(&cell)?;
     let style = config.format.style();
     let files: Vec<&SourceFile> = input.files.iter().map(|file| &file.source).collect();

@@ -28,7 +28,8 @@ pub(super) fn align(old: &[Node<'_>], new: &[Node<'_>]) -> Alignment {
         old_of: vec![None; count(new)],
         moved: BTreeMap::new(),
     };
-    let (olds, news): (Vec<&Node<'_>>, Vec<&Node<'_>>) = (old.iter().collect(), new.iter().collect());
+    let (olds, news): (Vec<&Node<'_>>, Vec<&Node<'_>>) =
+        (old.iter().collect(), new.iter().collect());
     alignment.lists(&olds, &news);
     alignment.uncross(old, new);
     alignment.find_moved(old, new);
@@ -103,7 +104,10 @@ impl Alignment {
                         } else {
                             self.pair(a.id, b.id);
                             let below = |node: &&Node<'_>| node.children.len();
-                            debug_assert!(below(a) > 0 || below(b) > 0, "leaves are their own whole");
+                            debug_assert!(
+                                below(a) > 0 || below(b) > 0,
+                                "leaves are their own whole"
+                            );
                             let (a, b): (Vec<_>, Vec<_>) =
                                 (a.children.iter().collect(), b.children.iter().collect());
                             self.lists(&a, &b);

@@ -3,6 +3,8 @@
 //! Numbers lose their form, names their case, and brackets that change nothing disappear. What has a
 //! syntax error is represented by its words.
 
+use std::fmt::Write as _;
+
 use super::names::Names;
 use super::number;
 use super::unread::words;
@@ -115,16 +117,18 @@ impl Writer<'_> {
         match &arg.kind {
             ArgKind::Positional(value) => self.write(out, value, LOOSEST),
             ArgKind::Named(name, value) => {
-                out.push_str(&format!("{}:=", name.key));
+                let _ = write!(out, "{}:=", name.key);
                 self.write(out, value, LOOSEST);
             }
-            ArgKind::Optional(name, None) => out.push_str(&format!("\\{}", name.key)),
+            ArgKind::Optional(name, None) => {
+                let _ = write!(out, "\\{}", name.key);
+            }
             ArgKind::Optional(name, Some(value)) => {
-                out.push_str(&format!("\\{}:=", name.key));
+                let _ = write!(out, "\\{}:=", name.key);
                 self.write(out, value, LOOSEST);
             }
             ArgKind::Conditional(name, value) => {
-                out.push_str(&format!("\\{}?", name.key));
+                let _ = write!(out, "\\{}?", name.key);
                 self.write(out, value, LOOSEST);
             }
         }
@@ -213,7 +217,7 @@ impl Writer<'_> {
             DataKind::Var => "VAR ",
             DataKind::Pers => "PERS ",
         });
-        out.push_str(&format!("{} {}", data.type_name.key, self.names.of(&data.name.key)));
+        let _ = write!(out, "{} {}", data.type_name.key, self.names.of(&data.name.key));
         if !data.dims.is_empty() {
             self.list(&mut out, "{", &data.dims, "}");
         }

@@ -57,7 +57,7 @@ pub fn compare(old: &Side, new: &Side, robot: Robot<'_>) -> Comparison {
         let name = b.or(a).map_or("", |group| group.name.as_str());
         let found = changes(name, &before, &after);
         let changed: BTreeSet<String> =
-            found.changes.iter().filter_map(|change| change.routine.clone()).collect();
+            found.list.iter().filter_map(|change| change.routine.clone()).collect();
         let runs = [(a, &before), (b, &after)].map(|(group, half)| simulated(group, half, robot));
         let (model, robots) = match robot {
             Robot::Known { model, plausible, .. } => (Some(model), plausible),
@@ -65,14 +65,14 @@ pub fn compare(old: &Side, new: &Side, robot: Robot<'_>) -> Comparison {
         };
         let of = Runs {
             task: name,
-            runs: runs.each_ref(),
+            both: runs.each_ref(),
             renamed: &found.routines,
             changed: &changed,
             model,
             robots,
         };
         comparison.cycles.push(cycle(&of));
-        comparison.changes.extend(found.changes);
+        comparison.changes.extend(found.list);
         comparison.state += found.state;
     }
     comparison
@@ -89,10 +89,7 @@ fn simulated(group: Option<&Group>, half: &Half<'_>, robot: Robot<'_>) -> Result
 }
 
 /// Groups with the same name correspond; two that are the only ones do, too.
-fn pairs<'g>(
-    old: &'g [Group],
-    new: &'g [Group],
-) -> Vec<(Option<&'g Group>, Option<&'g Group>)> {
+fn pairs<'g>(old: &'g [Group], new: &'g [Group]) -> Vec<(Option<&'g Group>, Option<&'g Group>)> {
     if let ([a], [b]) = (old, new) {
         return vec![(Some(a), Some(b))];
     }
@@ -127,8 +124,11 @@ fn split(side: &Side, read: &Read) -> Vec<Group> {
             if entries(&files) <= 1 {
                 groups.push(Group { name: folder, files, ..group.clone() });
             } else {
-                let alone =
-                    |file| Group { name: path(file).to_owned(), files: vec![file], ..group.clone() };
+                let alone = |file| Group {
+                    name: path(file).to_owned(),
+                    files: vec![file],
+                    ..group.clone()
+                };
                 groups.extend(files.into_iter().map(alone));
             }
         }

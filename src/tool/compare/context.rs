@@ -34,7 +34,7 @@ pub(super) struct Reworded {
     pub(super) differences: Vec<Difference>,
 }
 
-impl<'a> Context<'a> {
+impl Context<'_> {
     /// Writes canonical text of the old side, with the new names.
     pub(super) fn old_writer(&self) -> Writer<'_> {
         Writer { files: self.old.files, names: self.names }
@@ -54,8 +54,7 @@ impl<'a> Context<'a> {
         if found.as_ref().is_some_and(Vec::is_empty) && literal(old) && literal(new) {
             return None;
         }
-        let (before, after) =
-            (source(self.old.files, old.span), source(self.new.files, new.span));
+        let (before, after) = (source(self.old.files, old.span), source(self.new.files, new.span));
         let found = found.unwrap_or_default();
         let is_plain = matches!(
             found.as_slice(),

@@ -15,7 +15,7 @@ pub(super) const DELETE: u32 = 10;
 pub(super) const INSERT: u32 = 10;
 /// Two nodes that never correspond.
 pub(super) const NEVER: u32 = DELETE + INSERT + 1;
-/// Another condition of a block.
+/// Another condition of a block, or another value of what there is once.
 const CONDITION: u32 = 6;
 /// Another target, signal, or other first argument.
 const IDENTITY: u32 = 12;
@@ -43,7 +43,10 @@ pub(super) fn change(old: &Node<'_>, new: &Node<'_>) -> u32 {
         (StmtKind::If { .. }, StmtKind::If { .. })
         | (StmtKind::While { .. }, StmtKind::While { .. })
         | (StmtKind::For { .. }, StmtKind::For { .. })
-        | (StmtKind::Test { .. }, StmtKind::Test { .. }) => CONDITION,
+        | (StmtKind::Test { .. }, StmtKind::Test { .. })
+        | (StmtKind::Return(_), StmtKind::Return(_))
+        | (StmtKind::Raise(_), StmtKind::Raise(_))
+        | (StmtKind::Connect { .. }, StmtKind::Connect { .. }) => CONDITION,
         (StmtKind::Call(a), StmtKind::Call(b)) => {
             let (Callee::Name(a), Callee::Name(b)) = (&a.callee, &b.callee) else { return OTHER };
             let differing = differences(&old.parts, &new.parts);
@@ -66,9 +69,6 @@ pub(super) fn change(old: &Node<'_>, new: &Node<'_>) -> u32 {
             let target = |node: &Node<'_>| node.parts.first().map(|(_, text)| *text);
             if target(old) == target(new) { ASSIGNED } else { OTHER }
         }
-        (StmtKind::Return(_), StmtKind::Return(_))
-        | (StmtKind::Raise(_), StmtKind::Raise(_))
-        | (StmtKind::Connect { .. }, StmtKind::Connect { .. }) => CONDITION,
         (StmtKind::Goto(_), StmtKind::Goto(_)) => IDENTITY,
         (StmtKind::Broken, StmtKind::Broken) => OTHER,
         _ => NEVER,

@@ -116,12 +116,12 @@ impl Run {
 pub(super) struct Runs<'a> {
     pub(super) task: &'a str,
     /// Old and new.
-    pub(super) runs: [&'a Result<Run, String>; 2],
+    pub(super) both: [&'a Result<Run, String>; 2],
     /// New names of routines by their old ones, in lower case.
     pub(super) renamed: &'a BTreeMap<String, String>,
     /// Routines with changes.
     pub(super) changed: &'a BTreeSet<String>,
-    /// The robot; `None` with the reason in `runs`.
+    /// The robot; `None` with the reason in `both`.
     pub(super) model: Option<&'a Model>,
     /// Draws of plausible robots, if intervals are asked for.
     pub(super) robots: Option<&'a Robots>,
@@ -129,9 +129,10 @@ pub(super) struct Runs<'a> {
 
 /// Compares two cycles.
 pub(super) fn cycle(of: &Runs<'_>) -> Cycle {
-    let [old, new] = of.runs.map(|run| run.as_ref().ok());
+    let [old, new] = of.both.map(|run| run.as_ref().ok());
     let mut rows: BTreeMap<String, Procedure> = BTreeMap::new();
-    let empty = |name: &str| Procedure { name: name.to_owned(), old: None, new: None, reason: None };
+    let empty =
+        |name: &str| Procedure { name: name.to_owned(), old: None, new: None, reason: None };
     for name in of.changed {
         rows.insert(name.to_lowercase(), empty(name));
     }
@@ -144,7 +145,7 @@ pub(super) fn cycle(of: &Runs<'_>) -> Cycle {
         row.new = Some(*costs);
         row.name.clone_from(name);
     }
-    let reason = reason(&of.runs);
+    let reason = reason(&of.both);
     for row in rows.values_mut() {
         row.reason = match (&reason, row.old, row.new) {
             (Some(reason), ..) => Some(reason.clone()),

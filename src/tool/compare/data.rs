@@ -1,12 +1,12 @@
 //! Changes of declared data.
 
+use super::canonical::{Writer, scope};
 use super::change::{Action, Subject};
 use super::context::{Context, Reworded, source};
 use super::exact::same_data;
-use super::statement::Found;
 use super::names::Names;
-use super::canonical::{Writer, scope};
 use super::state::is_state;
+use super::statement::Found;
 use crate::rapid::ir::hir::{Data, DataKind};
 use crate::rapid::text::{SourceFile, Span};
 
@@ -37,8 +37,7 @@ pub(super) enum Compared {
 pub(super) fn compare(context: &Context<'_>, old: &Data, new: &Data) -> Compared {
     let identity = Names::default();
     let writer = Writer { files: context.new.files, names: &identity };
-    let (before, after) =
-        (context.old_writer().declaration(old), writer.declaration(new));
+    let (before, after) = (context.old_writer().declaration(old), writer.declaration(new));
     let found = |message: String, differences| {
         Compared::Changed(Found {
             subject: subject(&new.type_name.key),
@@ -63,7 +62,9 @@ pub(super) fn compare(context: &Context<'_>, old: &Data, new: &Data) -> Compared
     match (&old.init, &new.init) {
         (Some(a), Some(b)) => match context.reworded(&new.type_name.key, a, b) {
             None => Compared::Same,
-            Some(Reworded { message, differences }) => found(format!("{name} {message}"), differences),
+            Some(Reworded { message, differences }) => {
+                found(format!("{name} {message}"), differences)
+            }
         },
         (Some(value), None) => {
             let value = source(context.old.files, value.span);

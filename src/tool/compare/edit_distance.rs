@@ -122,7 +122,8 @@ impl Distances<'_> {
                 let both = if whole {
                     cost[(row - 1) * columns + column - 1] + self.replaced(old, new, a, b)
                 } else {
-                    let (before_a, before_b) = (old.leftmost[a] - first_i, new.leftmost[b] - first_j);
+                    let (before_a, before_b) =
+                        (old.leftmost[a] - first_i, new.leftmost[b] - first_j);
                     cost[before_a * columns + before_b] + self.tree(a, b)
                 };
                 let least = delete.min(insert).min(both);
@@ -153,7 +154,9 @@ impl Distances<'_> {
             let (a, b) = (first_i + row - 1, first_j + column - 1);
             let here = cost[row * columns + column];
             let whole = old.leftmost[a] == first_i && new.leftmost[b] == first_j;
-            if whole && here == cost[(row - 1) * columns + column - 1] + self.replaced(old, new, a, b) {
+            if whole
+                && here == cost[(row - 1) * columns + column - 1] + self.replaced(old, new, a, b)
+            {
                 if let (Some(a), Some(b)) = (old.nodes.get(a), new.nodes.get(b)) {
                     found.push((*a, *b));
                 }
@@ -173,7 +176,13 @@ impl Distances<'_> {
     }
 
     /// The cost of making the node at `b` of the node at `a`; the roots correspond to each other.
-    fn replaced(&self, old: &Postorder<'_, '_>, new: &Postorder<'_, '_>, a: usize, b: usize) -> u32 {
+    fn replaced(
+        &self,
+        old: &Postorder<'_, '_>,
+        new: &Postorder<'_, '_>,
+        a: usize,
+        b: usize,
+    ) -> u32 {
         match (old.nodes.get(a), new.nodes.get(b)) {
             (Some(old), Some(new)) if old.whole == new.whole => 0,
             (Some(old), Some(new))

@@ -6,7 +6,9 @@ use crate::rapid::ir::hir::{Data, Expr, StmtKind};
 
 /// Whether two nodes with the same canonical text are the same: that text rounds numbers.
 pub(super) fn same_node(old: &Node<'_>, new: &Node<'_>) -> bool {
-    let numbers = |node: &Node<'_>| -> Vec<f64> { exprs(&node.label).into_iter().flat_map(literals).collect() };
+    let numbers = |node: &Node<'_>| -> Vec<f64> {
+        exprs(&node.label).into_iter().flat_map(literals).collect()
+    };
     all_same(&numbers(old), &numbers(new))
 }
 
@@ -32,7 +34,9 @@ pub(super) fn exprs<'a>(label: &Label<'a>) -> Vec<&'a Expr> {
     match label {
         Label::Statement(stmt) => match &stmt.kind {
             // The others have nodes of their own.
-            StmtKind::If { branches, .. } => branches.iter().take(1).map(|(expr, _)| expr).collect(),
+            StmtKind::If { branches, .. } => {
+                branches.iter().take(1).map(|(expr, _)| expr).collect()
+            }
             StmtKind::Test { value, .. } => vec![value],
             kind => kind.exprs(),
         },

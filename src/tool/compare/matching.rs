@@ -157,12 +157,7 @@ fn renamed_data(old: &Half<'_>, new: &Half<'_>, free: &mut Free, found: &mut Mat
 }
 
 /// Routines with another name and the same text. Returns whether there are any.
-fn renamed_routines(
-    old: &Half<'_>,
-    new: &Half<'_>,
-    free: &mut Free,
-    found: &mut Matching,
-) -> bool {
+fn renamed_routines(old: &Half<'_>, new: &Half<'_>, free: &mut Free, found: &mut Matching) -> bool {
     if free.old_routines.is_empty() || free.new_routines.is_empty() {
         return false;
     }

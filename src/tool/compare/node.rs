@@ -96,7 +96,8 @@ impl<'b> Builder<'b> {
 
     // The depth of statements is limited by the parser.
     fn block<'a>(&mut self, block: &'a Block) -> Vec<Node<'a>> {
-        let is_code = |stmt: &&Stmt| !matches!(stmt.kind, StmtKind::Data(_) | StmtKind::Placeholder);
+        let is_code =
+            |stmt: &&Stmt| !matches!(stmt.kind, StmtKind::Data(_) | StmtKind::Placeholder);
         block.iter().filter(is_code).map(|stmt| self.statement(stmt)).collect()
     }
 
@@ -104,7 +105,8 @@ impl<'b> Builder<'b> {
         let label = Label::Statement(stmt);
         match &stmt.kind {
             StmtKind::If { branches, otherwise } => {
-                let first: Vec<&Block> = branches.first().map(|(_, block)| block).into_iter().collect();
+                let first: Vec<&Block> =
+                    branches.first().map(|(_, block)| block).into_iter().collect();
                 let mut branches: Vec<Branch<'a>> = branches
                     .iter()
                     .skip(1)
@@ -113,7 +115,8 @@ impl<'b> Builder<'b> {
                         (Label::ElseIf(condition, first), condition.span, block)
                     })
                     .collect();
-                branches.extend(otherwise.as_ref().map(|block| (Label::Else, end(stmt, block), block)));
+                branches
+                    .extend(otherwise.as_ref().map(|block| (Label::Else, end(stmt, block), block)));
                 self.node(label, stmt.span, &first, &branches)
             }
             StmtKind::For { body, .. } | StmtKind::While { body, .. } => {
@@ -123,11 +126,14 @@ impl<'b> Builder<'b> {
                 let mut branches: Vec<Branch<'a>> = cases
                     .iter()
                     .map(|(values, block)| {
-                        let span = values.first().map_or_else(|| end(stmt, block), |value| value.span);
+                        let span =
+                            values.first().map_or_else(|| end(stmt, block), |value| value.span);
                         (Label::Case(values), span, block)
                     })
                     .collect();
-                branches.extend(default.as_ref().map(|block| (Label::Default, end(stmt, block), block)));
+                branches.extend(
+                    default.as_ref().map(|block| (Label::Default, end(stmt, block), block)),
+                );
                 self.node(label, stmt.span, &[], &branches)
             }
             _ => self.node(label, stmt.span, &[], &[]),
@@ -189,7 +195,7 @@ impl Label<'_> {
             Label::Case(values) => format!("CASE {}:", list(values)),
             Label::Default => "DEFAULT:".to_owned(),
             Label::Backward => "BACKWARD".to_owned(),
-            Label::Error(numbers) if numbers.is_empty() => "ERROR".to_owned(),
+            Label::Error([]) => "ERROR".to_owned(),
             Label::Error(numbers) => format!("ERROR ({})", list(numbers)),
             Label::Undo => "UNDO".to_owned(),
         }

@@ -18,9 +18,9 @@ pub(super) fn same(a: f64, b: f64) -> bool {
     let is_written = |from: f64, to: f64| {
         let stored = f64::from(from as f32);
         stored == f64::from(to as f32)
-            || DIGITS.into_iter().any(|digits| {
-                rounded(from, digits) == to || rounded(stored, digits) == to
-            })
+            || DIGITS
+                .into_iter()
+                .any(|digits| rounded(from, digits) == to || rounded(stored, digits) == to)
     };
     is_written(a, b) || is_written(b, a)
 }

@@ -1,5 +1,7 @@
 //! Routines and modules as canonical text, one declaration or statement a line.
 
+use std::fmt::Write as _;
+
 use super::canonical::{Writer, parameter, scope};
 use super::declared;
 use super::names::Names;
@@ -19,8 +21,11 @@ use crate::rapid::text::{FileId, SourceFile, is_encoded_module};
 pub fn meaning(file: &SourceFile) -> String {
     let file = SourceFile { id: FileId(0), ..file.clone() };
     if is_encoded_module(&file.bytes) {
-        let bytes: String = file.bytes.iter().map(|byte| format!("{byte:02x}")).collect();
-        return format!("encoded module {bytes}\n");
+        let mut out = "encoded module ".to_owned();
+        for byte in &file.bytes {
+            let _ = write!(out, "{byte:02x}");
+        }
+        return out + "\n";
     }
     let parse = syntax::parse(&file.bytes);
     let program = Program::new(lower(file.id, &parse, &file.bytes));
@@ -29,7 +34,7 @@ pub fn meaning(file: &SourceFile) -> String {
     let writer = Writer { files, names: &names };
     let mut out = String::new();
     for text in unread(&file, &parse) {
-        out.push_str(&format!("unreadable: {}\n", text.words));
+        let _ = writeln!(out, "unreadable: {}", text.words);
     }
     let mut modules: Vec<&Module> =
         program.modules.iter().filter(|module| module.span.end > 0).collect();
@@ -55,14 +60,14 @@ fn module_text(writer: &Writer<'_>, program: &Program, module: &Module) -> Strin
         module.data.iter().map(|data| (data.name.key.as_str(), data_line(data))).collect();
     data.sort();
     for line in types.iter().chain(data.iter().map(|(_, line)| line)) {
-        out.push_str(&format!("  {line};\n"));
+        let _ = writeln!(out, "  {line};");
     }
     let mut routines: Vec<&Routine> = module.routines.iter().collect();
     routines.sort_by_key(|routine| &routine.name.key);
     for routine in routines {
         out.push('\n');
         for line in routine_text(writer, routine, &routine.name.key).lines() {
-            out.push_str(&format!("  {line}\n"));
+            let _ = writeln!(out, "  {line}");
         }
     }
     out.push_str("ENDMODULE\n");
@@ -97,7 +102,7 @@ pub(super) fn routine_text(writer: &Writer<'_>, routine: &Routine, name: &str) -
         .collect();
     data.sort();
     for (_, line) in data {
-        out.push_str(&format!("  {line};\n"));
+        let _ = writeln!(out, "  {line};");
     }
     let mut interner = Interner::default();
     let mut builder = Builder::new(*writer, &mut interner);
@@ -114,11 +119,11 @@ fn write_nodes(writer: &Writer<'_>, nodes: &[Node<'_>], depth: usize, out: &mut 
             _ => depth.saturating_sub(1),
         };
         let end = if node.label.is_block() { "" } else { ";" };
-        out.push_str(&format!("{}{}{end}\n", "  ".repeat(indent), node.label.text(writer)));
+        let _ = writeln!(out, "{}{}{end}", "  ".repeat(indent), node.label.text(writer));
         let below = if matches!(node.label, Label::Statement(_)) { depth + 1 } else { depth };
         write_nodes(writer, &node.children, below, out);
         if matches!(node.label, Label::Statement(_)) && node.label.is_block() {
-            out.push_str(&format!("{}END{}\n", "  ".repeat(depth), node.label.word()));
+            let _ = writeln!(out, "{}END{}", "  ".repeat(depth), node.label.word());
         }
     }
 }

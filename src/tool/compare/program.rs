@@ -1,7 +1,9 @@
 //! Changes between two programs.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
 
+use super::canonical::Writer;
 use super::change::{Action, Change, Subject};
 use super::context::{Context, source};
 use super::data::{self, Compared};
@@ -12,14 +14,13 @@ use super::print::{attributes, header, type_text};
 use super::side::Half;
 use super::statement::Found;
 use super::statements::statements;
-use super::canonical::Writer;
 use crate::rapid::ir::hir::{Data, Module, Routine, RoutineKind, TypeDef};
 use crate::rapid::ir::program::{DataId, RoutineId};
 use crate::rapid::text::is_encoded_module;
 
 /// The changes of a program, with the routines that correspond.
 pub(super) struct Changes {
-    pub(super) changes: Vec<Change>,
+    pub(super) list: Vec<Change>,
     /// Number of `PERS` values that differ and are only state.
     pub(super) state: usize,
     /// Names of routines in lower case, old to new.
@@ -43,7 +44,7 @@ pub(super) fn changes(task: &str, old: &Half<'_>, new: &Half<'_>) -> Changes {
         (key(old, *old_id), key(new, *new_id))
     };
     Changes {
-        changes: changes.into_iter().map(|(_, change)| change).collect(),
+        list: changes.into_iter().map(|(_, change)| change).collect(),
         state,
         routines: matching.routines.iter().map(name).collect(),
     }
@@ -67,7 +68,7 @@ impl List<'_> {
         let Found { subject, action, spans: [old, new], mut message, differences } = found;
         if message.trim().is_empty() {
             // Something is missing in the text.
-            message = "without a name".to_owned();
+            "without a name".clone_into(&mut message);
         }
         let change = Change {
             subject,
@@ -195,7 +196,7 @@ impl List<'_> {
                 Compared::State => self.state += 1,
                 Compared::Changed(mut found) => {
                     if let Some(count @ 2..) = self.uses.get(&after.name.key) {
-                        found.message.push_str(&format!(", used {count} times"));
+                        let _ = write!(found.message, ", used {count} times");
                     }
                     self.add(order, module, None, found);
                 }
@@ -277,8 +278,7 @@ impl List<'_> {
         let new_writer = Writer { files: new_half.files, names: &identity };
         let [from, to] = [header(&old_writer, before), header(&new_writer, after)];
         if from != to {
-            let found =
-                plain(Subject::Routine, Action::Changed, spans, format!("{from} → {to}"));
+            let found = plain(Subject::Routine, Action::Changed, spans, format!("{from} → {to}"));
             self.add(order(1), module, name, found);
         }
         let context = Context {
@@ -389,9 +389,9 @@ fn renamed_locals(old: &Routine, new: &Routine) -> BTreeMap<String, String> {
             exprs.flat_map(super::context::read_names).filter(|name| *name == key).count()
         };
         let count = uses(old, &data.name.key);
-        let to = free.iter().position(|other| {
-            is_alike(data, other) && uses(new, &other.name.key) == count
-        });
+        let to = free
+            .iter()
+            .position(|other| is_alike(data, other) && uses(new, &other.name.key) == count);
         if let Some(at) = to {
             renamed.insert(data.name.key.clone(), free.remove(at).name.key.clone());
         }
@@ -408,7 +408,10 @@ fn plain(
     Found { subject, action, spans, message, differences: Vec::new() }
 }
 
-fn one_sided(span: crate::rapid::text::Span, action: Action) -> [Option<crate::rapid::text::Span>; 2] {
+fn one_sided(
+    span: crate::rapid::text::Span,
+    action: Action,
+) -> [Option<crate::rapid::text::Span>; 2] {
     if action == Action::Removed { [Some(span), None] } else { [None, Some(span)] }
 }
 

@@ -80,18 +80,14 @@ impl Read {
 
     /// The program of a group.
     pub(super) fn half<'a>(&'a self, side: &'a Side, group: &Group) -> Half<'a> {
-        let modules =
-            |files: &[usize]| files.iter().flat_map(|file| self.files[*file].modules.clone()).collect();
+        let modules = |files: &[usize]| {
+            files.iter().flat_map(|file| self.files[*file].modules.clone()).collect()
+        };
         let mut all: Vec<Module> = modules(&group.files);
         let own = all.len();
         let shared: Vec<Module> = modules(&group.shared);
         all.extend(shared);
         let unread = group.files.iter().flat_map(|file| &self.files[*file].unread);
-        Half {
-            files: &side.files,
-            program: Program::new(all),
-            own,
-            unread: unread.collect(),
-        }
+        Half { files: &side.files, program: Program::new(all), own, unread: unread.collect() }
     }
 }

@@ -105,7 +105,11 @@ pub(super) fn changed(context: &Context<'_>, old: &Node<'_>, new: &Node<'_>) -> 
         let instruction = builtins::instruction(&b.key);
         if context.names.of(&a.key) != b.key {
             if instruction.is_none() || builtins::instruction(&a.key).is_none() {
-                return vec![found(subject(&new.label), both(context, old.span, new.span), Vec::new())];
+                return vec![found(
+                    subject(&new.label),
+                    both(context, old.span, new.span),
+                    Vec::new(),
+                )];
             }
             let mut changes = arguments(context, instruction, old, new);
             let message = format!("{}: {} → {}", head(context.new.files, after), a.text, b.text);
@@ -184,7 +188,8 @@ fn arguments(
             differences,
         });
     };
-    let is_in = |parts: &[(Part<'_>, u32)], role: Role<'_>| parts.iter().any(|(p, _)| p.role == role);
+    let is_in =
+        |parts: &[(Part<'_>, u32)], role: Role<'_>| parts.iter().any(|(p, _)| p.role == role);
     for (part, _) in &old.parts {
         let other = new.parts.iter().find(|(other, _)| other.role == part.role);
         match (part.value, other) {
@@ -194,7 +199,8 @@ fn arguments(
                     (Role::Target | Role::Via, Some(instruction)) => target_type(instruction),
                     _ => of_part(instruction, part.role).1,
                 };
-                if let Some(Reworded { message, differences }) = context.reworded(ty, before, after) {
+                if let Some(Reworded { message, differences }) = context.reworded(ty, before, after)
+                {
                     add(part.role, message, differences);
                 }
             }
@@ -272,7 +278,8 @@ pub(super) fn headline(files: &[SourceFile], label: &Label<'_>) -> String {
     match label {
         Label::Statement(stmt) => match &stmt.kind {
             StmtKind::If { branches, .. } => {
-                let condition = branches.first().map(|(condition, _)| source(files, condition.span));
+                let condition =
+                    branches.first().map(|(condition, _)| source(files, condition.span));
                 format!("IF {}", condition.unwrap_or_default())
             }
             StmtKind::For { var, from, to, step, .. } => {

@@ -1,11 +1,11 @@
 //! Changes of the statements of a routine.
 
 use super::align::{Alignment, align, flat};
+use super::canonical::Writer;
+use super::change::{Action, Subject};
 use super::context::{Context, source};
 use super::exact::same_node;
-use super::change::{Action, Subject};
 use super::names::Names;
-use super::canonical::Writer;
 use super::node::{Builder, Interner, Label, Node};
 use super::statement::{Found, changed, headline, subject};
 use crate::rapid::ir::hir::{Routine, StmtKind};

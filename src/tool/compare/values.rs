@@ -193,7 +193,9 @@ fn triple(list: &[f64]) -> Result<[f64; 3], std::array::TryFromSliceError> {
 
 /// The angle between two orientations, degrees; `q` and `−q` are the same one.
 fn turned(old: &[f64], new: &[f64]) -> Option<f64> {
-    let (Ok(a), Ok(b)) = (<[f64; 4]>::try_from(old), <[f64; 4]>::try_from(new)) else { return None };
+    let (Ok(a), Ok(b)) = (<[f64; 4]>::try_from(old), <[f64; 4]>::try_from(new)) else {
+        return None;
+    };
     let alike = |sign: f64| a.iter().zip(&b).all(|(a, b)| same(*a, sign * b));
     if alike(1.0) || alike(-1.0) {
         return Some(0.0);

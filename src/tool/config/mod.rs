@@ -132,7 +132,9 @@ mod tests {
             Style { indent: Indent::Spaces(4), keywords: KeywordCase::Keep, blank_lines: 2 };
         assert_eq!(style(text), expected);
         assert_eq!(style("[format]\nindent_style = \"tabs\"").indent, Indent::Tab);
-        for wrong in ["indent-width = 0", "indent-width = 17", "max-blank-lines = 101", "indent = 2"] {
+        for wrong in
+            ["indent-width = 0", "indent-width = 17", "max-blank-lines = 101", "indent = 2"]
+        {
             let error = parse("joulepath.toml", &format!("[format]\n{wrong}")).expect_err(wrong);
             let key = wrong.split(' ').next().expect("a key");
             assert!(error.to_string().contains(key), "{error}");

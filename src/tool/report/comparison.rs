@@ -1,6 +1,7 @@
 //! The result of `diff` as text and as JSON.
 
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 
 use serde_json::{Value, json};
 
@@ -115,21 +116,21 @@ pub fn text(of: Compared<'_>) -> String {
         out.push_str("Nothing changed in meaning.\n");
     }
     for section in of.sections() {
-        out.push_str(&format!("{}\n", section.title));
+        let _ = writeln!(out, "{}", section.title);
         for change in section.changes {
-            let [old, new] = of.places(change).map(|place| {
-                place.map(|(file, line)| format!("{file}:{line}"))
-            });
+            let [old, new] =
+                of.places(change).map(|place| place.map(|(file, line)| format!("{file}:{line}")));
             let place = match (old, new) {
                 (Some(old), Some(new)) => format!("{old} → {new}"),
                 (old, new) => old.or(new).unwrap_or_default(),
             };
-            out.push_str(&format!(
-                "  {:<8}{:<13}{}  [{place}]\n",
+            let _ = writeln!(
+                out,
+                "  {:<8}{:<13}{}  [{place}]",
                 change.action.name(),
                 change.subject.name().replace('_', " "),
                 change.message,
-            ));
+            );
         }
         out.push('\n');
     }
@@ -164,16 +165,18 @@ fn cycle_text(cycle: &Cycle) -> String {
     let [time, energy] = deltas(*old, *new);
     let time = time.map_or_else(|| "unknown".to_owned(), |x| format!("{x:+.3} s"));
     let energy = energy.map_or_else(|| "energy not known".to_owned(), |x| format!("{x:+.1} J"));
-    let interval = cycle.totals.energy_interval_j.map(|[low, high]| {
-        format!(" ({low:+.1} to {high:+.1} J in 90 % of the plausible robots)")
-    });
-    out.push_str(&format!("{task}one cycle: {time}, {energy}{}\n", interval.unwrap_or_default()));
+    let interval = cycle
+        .totals
+        .energy_interval_j
+        .map(|[low, high]| format!(" ({low:+.1} to {high:+.1} J in 90 % of the plausible robots)"));
+    let _ = writeln!(out, "{task}one cycle: {time}, {energy}{}", interval.unwrap_or_default());
     out
 }
 
 /// The cells of a procedure; the last one says why figures are missing.
 fn procedure_row(procedure: &Procedure) -> Vec<String> {
-    let time = |costs: Option<Costs>| costs.map_or("\u{2013}".into(), |c| format!("{:.3}", c.time_s));
+    let time =
+        |costs: Option<Costs>| costs.map_or("\u{2013}".into(), |c| format!("{:.3}", c.time_s));
     let energy = |costs: Option<Costs>| {
         let energy = costs.and_then(|costs| costs.energy_j);
         energy.map_or("\u{2013}".into(), |x| format!("{x:.1}"))
@@ -232,9 +235,9 @@ pub fn json(of: Compared<'_>) -> Value {
 }
 
 fn change_json(of: Compared<'_>, change: &Change) -> Value {
-    let [old, new] = of.places(change).map(|place| {
-        place.map(|(file, line)| json!({ "file": file, "line": line }))
-    });
+    let [old, new] = of
+        .places(change)
+        .map(|place| place.map(|(file, line)| json!({ "file": file, "line": line })));
     json!({
         "subject": change.subject.name(),
         "action": change.action.name(),

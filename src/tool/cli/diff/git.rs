@@ -165,7 +165,9 @@ pub(super) fn write(
     stdout.read_to_end(&mut answer).context("cannot read what git wrote")?;
     let told = asked.join().is_ok_and(|written| written.is_ok());
     if !told || !child.wait().is_ok_and(|status| status.success()) {
-        bail!("git could not read the files of revision {revision}; git fsck checks the repository");
+        bail!(
+            "git could not read the files of revision {revision}; git fsck checks the repository"
+        );
     }
     let mut rest = answer.as_slice();
     for (object, file) in &files {

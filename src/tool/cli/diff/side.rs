@@ -173,7 +173,9 @@ pub(super) fn read(named: Named, entry: Option<&str>) -> anyhow::Result<Read> {
     let skipped = input.unreadable.iter();
     let notes = skipped.map(|it| format!("skipped '{}': {}", shown(&it.path), it.reason)).collect();
     let read = match &source {
-        Source::Path(_) => input.files.iter().map(|file| PathBuf::from(&file.source.path)).collect(),
+        Source::Path(_) => {
+            input.files.iter().map(|file| PathBuf::from(&file.source.path)).collect()
+        }
         _ => Vec::new(),
     };
     let robot = input.backups.iter().find_map(|(root, backup)| {
@@ -208,7 +210,10 @@ fn side(input: &Input, entry: Option<&str>) -> Side {
             Some(place) => {
                 let backup = &input.backups[place.backup].1;
                 let task = backup.tasks.iter().find(|task| task.folder == place.folder);
-                (backup.task_name(&place.folder).to_owned(), task.and_then(|task| task.entry.as_ref()))
+                (
+                    backup.task_name(&place.folder).to_owned(),
+                    task.and_then(|task| task.entry.as_ref()),
+                )
             }
             None => (String::new(), None),
         };

@@ -166,7 +166,8 @@ fn cycle(cycle: &Cycle) -> CycleRows {
 fn procedure(procedure: &Procedure) -> ProcedureRow {
     let Procedure { name, old, new, reason } = procedure;
     let [time, energy] = both(*old, *new);
-    let shown = |costs: &Option<Costs>| costs.map(|costs| seconds(costs.time_s)).unwrap_or_default();
+    let shown =
+        |costs: &Option<Costs>| costs.map(|costs| seconds(costs.time_s)).unwrap_or_default();
     let energy_of = |costs: &Option<Costs>| {
         costs.and_then(|costs| costs.energy_j).map(joules).unwrap_or_default()
     };
