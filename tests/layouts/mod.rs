@@ -6,6 +6,9 @@
     reason = "each test uses its part of this module; an expectation would fail in the others"
 )]
 
+pub(crate) mod resaved;
+pub(crate) mod single_edits;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::canonical::Writer;
 use super::context::read_names;
-use super::names::{Names, Renames};
+use super::names::{LocalNames, Names, Renames};
 use super::print::routine_text;
 use super::side::Half;
 use crate::rapid::ir::hir::{Callee, Data, Expr, Routine, Scope, StmtKind};
@@ -27,42 +27,50 @@ pub(super) fn matching(old: &Half<'_>, new: &Half<'_>) -> Matching {
     let mut found = Matching { modules: modules(old, new), ..Matching::default() };
     let new_of: BTreeMap<usize, usize> = found.modules.iter().copied().collect();
     let mut free = Free::new(old, new);
-    let by_name = |free: &mut Free, same_module: bool| {
-        let is_there = |old: usize, new: usize| !same_module || new_of.get(&old) == Some(&new);
-        let mut pairs = (Vec::new(), Vec::new());
-        for a in free.old_routines.clone() {
-            let routine = old.program.routine(a);
-            let to = free.new_routines.iter().copied().find(|b| {
-                let other = new.program.routine(*b);
-                other.name.key == routine.name.key && is_there(a.module, b.module)
-            });
-            if let Some(b) = to {
-                free.take_routines(a, b);
-                pairs.0.push((a, b));
-            }
-        }
-        for a in free.old_data.clone() {
-            let data = old.program.data(a);
-            let to = free.new_data.iter().copied().find(|b| {
-                let other = new.program.data(*b);
-                other.name.key == data.name.key && is_there(a.module, b.module)
-            });
-            if let Some(b) = to {
-                free.take_data(a, b);
-                pairs.1.push((a, b));
-            }
-        }
-        pairs
-    };
+    // In the same module first, then in any.
     for same_module in [true, false] {
-        let (routines, data) = by_name(&mut free, same_module);
-        found.routines.extend(routines);
-        found.data.extend(data);
+        let old_place = |module: usize| same_module.then(|| new_of.get(&module).copied());
+        let new_place = |module: usize| same_module.then_some(Some(module));
+        let routines = by_name(
+            &free.old_routines,
+            &free.new_routines,
+            |id| (old_place(id.module), &old.program.routine(id).name.key),
+            |id| (new_place(id.module), &new.program.routine(id).name.key),
+        );
+        for (a, b) in routines {
+            free.take_routines(a, b);
+            found.routines.push((a, b));
+        }
+        let data = by_name(
+            &free.old_data,
+            &free.new_data,
+            |id| (old_place(id.module), &old.program.data(id).name.key),
+            |id| (new_place(id.module), &new.program.data(id).name.key),
+        );
+        for (a, b) in data {
+            free.take_data(a, b);
+            found.data.push((a, b));
+        }
     }
     renamed_data(old, new, &mut free, &mut found);
     // A renamed routine may be called by another one.
     while renamed_routines(old, new, &mut free, &mut found) {}
     found
+}
+
+/// Pairs with equal keys; those with the same key in their order.
+fn by_name<I: Copy, K: Ord>(
+    old: &BTreeSet<I>,
+    new: &BTreeSet<I>,
+    old_key: impl Fn(I) -> K,
+    new_key: impl Fn(I) -> K,
+) -> Vec<(I, I)> {
+    let mut waiting: BTreeMap<K, Vec<I>> = BTreeMap::new();
+    for b in new.iter().rev() {
+        waiting.entry(new_key(*b)).or_default().push(*b);
+    }
+    let pair = |a: &I| Some((*a, waiting.get_mut(&old_key(*a))?.pop()?));
+    old.iter().filter_map(pair).collect()
 }
 
 /// Modules with the same name; among equal names, those at the same place of the order. Two that are
@@ -173,7 +181,8 @@ fn renamed_routines(old: &Half<'_>, new: &Half<'_>, free: &mut Free, found: &mut
     for a in &free.old_routines {
         let routine = old.program.routine(*a);
         let module = &old.program.modules[a.module];
-        let names = Names::of_module(module, a.module, &found.renames).in_routine(routine, &none);
+        let local = LocalNames::new(module, a.module, &found.renames);
+        let names = Names::of_module(&local, &found.renames).in_routine(routine, &none);
         let text = routine_text(&Writer { files: old.files, names: &names }, routine, "");
         if let Some(b) = waiting.get_mut(&text).and_then(Vec::pop) {
             pairs.push((*a, b));

@@ -13,19 +13,14 @@ pub(super) struct Renames {
     pub(super) local: BTreeMap<usize, BTreeMap<String, String>>,
 }
 
-/// What the names in a routine, or in the data of a module, mean.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Names<'a> {
-    /// Names of the routine, with their new names.
-    routine: BTreeMap<&'a str, &'a str>,
-    /// `LOCAL` names of the module, with their new names.
-    module: BTreeMap<&'a str, &'a str>,
-    global: Option<&'a BTreeMap<String, String>>,
+/// The `LOCAL` names of an old module, with their new names.
+#[derive(Debug)]
+pub(super) struct LocalNames<'a> {
+    names: BTreeMap<&'a str, &'a str>,
 }
 
-impl<'a> Names<'a> {
-    /// The names of the data of an old module.
-    pub(super) fn of_module(module: &'a Module, index: usize, renames: &'a Renames) -> Names<'a> {
+impl<'a> LocalNames<'a> {
+    pub(super) fn new(module: &'a Module, index: usize, renames: &'a Renames) -> LocalNames<'a> {
         let renamed = renames.local.get(&index);
         let data = module.data.iter().map(|data| (data.scope, &data.name));
         let routines = module.routines.iter().map(|routine| (routine.scope, &routine.name));
@@ -33,8 +28,23 @@ impl<'a> Names<'a> {
         let new = |key: &'a String| {
             renamed.and_then(|names| names.get(key)).map_or(key.as_str(), String::as_str)
         };
-        let module = locals.map(|(_, name)| (name.key.as_str(), new(&name.key))).collect();
-        Names { routine: BTreeMap::new(), module, global: Some(&renames.global) }
+        LocalNames { names: locals.map(|(_, name)| (name.key.as_str(), new(&name.key))).collect() }
+    }
+}
+
+/// What the names in a routine, or in the data of a module, mean; by default what they say.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Names<'a> {
+    /// Names of the routine, with their new names.
+    routine: BTreeMap<&'a str, &'a str>,
+    module: Option<&'a LocalNames<'a>>,
+    global: Option<&'a BTreeMap<String, String>>,
+}
+
+impl<'a> Names<'a> {
+    /// The names of the data of an old module.
+    pub(super) fn of_module(local: &'a LocalNames<'a>, renames: &'a Renames) -> Names<'a> {
+        Names { routine: BTreeMap::new(), module: Some(local), global: Some(&renames.global) }
     }
 
     /// The names in an old routine; `renamed` are those of the routine itself.
@@ -55,7 +65,8 @@ impl<'a> Names<'a> {
     where
         'a: 'k,
     {
-        let known = self.routine.get(key).or_else(|| self.module.get(key)).copied();
+        let of_module = || self.module.and_then(|local| local.names.get(key));
+        let known = self.routine.get(key).or_else(of_module).copied();
         let global = || self.global.and_then(|names| names.get(key)).map(String::as_str);
         known.or_else(global).unwrap_or(key)
     }

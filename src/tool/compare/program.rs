@@ -9,7 +9,7 @@ use super::context::{Context, source};
 use super::data::{self, Compared};
 use super::declared;
 use super::matching::{Matching, matching, uses};
-use super::names::{Names, locals};
+use super::names::{LocalNames, Names, locals};
 use super::print::{attributes, header, type_text};
 use super::side::Half;
 use super::statement::Found;
@@ -31,8 +31,19 @@ pub(super) struct Changes {
 pub(super) fn changes(task: &str, old: &Half<'_>, new: &Half<'_>) -> Changes {
     let matching = matching(old, new);
     let uses = uses(new);
-    let mut list =
-        List { task, old, new, matching: &matching, uses: &uses, changes: Vec::new(), state: 0 };
+    let modules = old.program.modules.iter().enumerate();
+    let local: Vec<LocalNames<'_>> =
+        modules.map(|(index, module)| LocalNames::new(module, index, &matching.renames)).collect();
+    let mut list = List {
+        task,
+        old,
+        new,
+        matching: &matching,
+        local: &local,
+        uses: &uses,
+        changes: Vec::new(),
+        state: 0,
+    };
     list.modules();
     list.data();
     list.routines();
@@ -58,6 +69,8 @@ struct List<'l> {
     old: &'l Half<'l>,
     new: &'l Half<'l>,
     matching: &'l Matching,
+    /// By old module.
+    local: &'l [LocalNames<'l>],
     uses: &'l BTreeMap<String, usize>,
     changes: Vec<(Order, Change)>,
     state: usize,
@@ -179,11 +192,7 @@ impl List<'_> {
                 let subject = data::subject(&after.type_name.key);
                 self.add(order, module, None, plain(subject, Action::Moved, spans, message));
             }
-            let names = Names::of_module(
-                &old_half.program.modules[a.module],
-                a.module,
-                &self.matching.renames,
-            );
+            let names = Names::of_module(&self.local[a.module], &self.matching.renames);
             let context = Context {
                 old: old_half,
                 new: new_half,
@@ -270,8 +279,7 @@ impl List<'_> {
             self.add(order(0), module, name, found);
         }
         let renamed = renamed_locals(before, after);
-        let old_module = &old_half.program.modules[a.module];
-        let names = Names::of_module(old_module, a.module, &self.matching.renames)
+        let names = Names::of_module(&self.local[a.module], &self.matching.renames)
             .in_routine(before, &renamed);
         let identity = Names::default();
         let old_writer = Writer { files: old_half.files, names: &names };
