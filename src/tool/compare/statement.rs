@@ -299,6 +299,12 @@ pub(super) fn headline(files: &[SourceFile], label: &Label<'_>) -> String {
     }
 }
 
+/// Both texts. Where they are equal, a name in them was given to something else, or is left over from
+/// what has another name now.
 fn both(context: &Context<'_>, old: Span, new: Span) -> String {
-    format!("{} → {}", source(context.old.files, old), source(context.new.files, new))
+    let (old, new) = (source(context.old.files, old), source(context.new.files, new));
+    if old == new {
+        return format!("{new}: a name in it means something else than before");
+    }
+    format!("{old} → {new}")
 }
