@@ -163,6 +163,11 @@ fn revisions_of_git_are_sides() {
     check(root, &["HEAD", "cell"], &[waits]);
     check(&root.join("cell"), &["HEAD:./Main.mod", "Main.mod"], &[waits]);
     check(&root.join("cell"), &["--git", "HEAD"], &[waits]);
+    // A file that is gone.
+    fs::rename(root.join("cell/Main.mod"), root.join("kept")).unwrap();
+    let gone = json(root, &["--git", "HEAD", "cell/Main.mod"]);
+    assert!(messages(&gone)[0].starts_with("module Cell with 3 routines"), "{gone}");
+    fs::rename(root.join("kept"), root.join("cell/Main.mod")).unwrap();
     // From outside.
     let outside = tempfile::tempdir().unwrap();
     let path = root.join("cell");

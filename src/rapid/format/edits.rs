@@ -192,22 +192,29 @@ impl<'f> Formatter<'f> {
     /// that ends there. Before `ELSE` and the like, a comment further to the right than this word belongs
     /// to the block before it.
     fn comment_steps(&self, index: usize) -> usize {
-        let Some(next) = (index..self.words.len()).find(|next| !self.is_comment(*next)) else {
-            return 0;
-        };
-        let token = self.words[next];
-        let steps = usize::from(self.layout.steps[token]);
-        match self.layout.starts[token] {
+        let token = self.words[index];
+        let Some(next) = self.layout.behind(token) else { return 0 };
+        let steps = usize::from(self.layout.steps[next]);
+        match self.layout.starts[next] {
             Start::Inside => steps + 1,
-            Start::Line if closes(self.word(next).kind) => steps + 1,
-            Start::Line if divides(self.word(next).kind) => {
-                let column = |index: usize| {
-                    let gap = self.old(index);
-                    gap.bytes().len() - gap.before_last_line()
-                };
-                steps + usize::from(column(index) > column(next))
+            Start::Line if closes(self.parse.tree.tokens().kind(next)) => steps + 1,
+            Start::Line if divides(self.parse.tree.tokens().kind(next)) => {
+                steps + usize::from(self.column(token) > self.column(next))
             }
             Start::Line | Start::Free => steps,
+        }
+    }
+
+    /// Number of bytes of the white space before a token on its line.
+    fn column(&self, token: usize) -> usize {
+        let tokens = self.parse.tree.tokens();
+        match token.checked_sub(1) {
+            Some(before) if tokens.kind(before) == TokenKind::Whitespace => {
+                let range = tokens.range(before);
+                let gap = Gap::new(&self.file.bytes[range.start as usize..range.end as usize]);
+                gap.bytes().len() - gap.before_last_line()
+            }
+            _ => 0,
         }
     }
 

@@ -23,6 +23,8 @@ pub(super) struct Layout {
     pub(super) callees: Vec<bool>,
     /// Whether the token begins the statement of a compact IF.
     pub(super) compact: Vec<bool>,
+    /// The next token from this one on that is neither white space nor a comment.
+    next: Vec<usize>,
 }
 
 impl Layout {
@@ -33,10 +35,23 @@ impl Layout {
             steps: vec![0; count],
             callees: vec![false; count],
             compact: vec![false; count],
+            next: vec![count; count],
         };
+        for index in (0..count).rev() {
+            layout.next[index] = if tree.tokens().kind(index).is_trivia() {
+                layout.next.get(index + 1).copied().unwrap_or(count)
+            } else {
+                index
+            };
+        }
         let mut walk = Walk { tokens: tree.tokens(), layout: &mut layout };
         walk.children(tree.root(), 0);
         layout
+    }
+
+    /// The token that a comment stands before, comments skipped.
+    pub(super) fn behind(&self, comment: usize) -> Option<usize> {
+        self.next.get(comment).copied().filter(|next| *next < self.next.len())
     }
 }
 

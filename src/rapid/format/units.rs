@@ -30,9 +30,8 @@ impl Units {
             let is_comment = tokens.kind(*word) == TokenKind::Comment;
             let begins = if is_comment {
                 // A comment between statements is one of its own, unless it stands behind one.
-                let next =
-                    words[index..].iter().find(|next| tokens.kind(**next) != TokenKind::Comment);
-                let is_between = next.is_none_or(|next| layout.starts[*next] != Start::Inside);
+                let next = layout.behind(*word);
+                let is_between = next.is_none_or(|next| layout.starts[next] != Start::Inside);
                 is_between && is_first(index)
             } else {
                 layout.starts[*word] == Start::Line

@@ -71,7 +71,8 @@ impl Repository {
     pub(super) fn inner_path(&self, path: &Path) -> anyhow::Result<String> {
         let prefix = self.run(["rev-parse", "--show-prefix"])?;
         let prefix = String::from_utf8_lossy(&prefix).trim().to_owned();
-        let rest = path.strip_prefix(&self.folder).unwrap_or(Path::new(""));
+        let is_here = self.folder == Path::new(".");
+        let rest = if is_here { path } else { path.strip_prefix(&self.folder)? };
         let parts = rest.components().filter_map(|part| match part {
             Component::Normal(part) => Some(part.to_string_lossy()),
             _ => None,
