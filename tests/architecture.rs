@@ -25,6 +25,7 @@ const PAGES: [&str; 21] = [
     "docs/controller.md",
     "docs/effects.md",
     "docs/energy.md",
+    "docs/format.md",
     "docs/gap.md",
     "docs/glossary.md",
     "docs/identification.md",
