@@ -44,7 +44,7 @@ impl Layout {
                 index
             };
         }
-        let mut walk = Walk { tokens: tree.tokens(), layout: &mut layout };
+        let mut walk = Walk { tokens: tree.tokens(), layout: &mut layout, last: 0 };
         walk.children(tree.root(), 0);
         layout
     }
@@ -58,20 +58,34 @@ impl Layout {
 struct Walk<'w> {
     tokens: &'w Tokens,
     layout: &'w mut Layout,
+    /// The last token that was looked up: the next one is near.
+    last: usize,
 }
 
 impl Walk<'_> {
     /// The token that starts at a byte.
-    fn token(&self, start: u32) -> usize {
-        let (mut low, mut high) = (0, self.tokens.count());
+    fn token(&mut self, start: u32) -> usize {
+        let is_before = |index: usize| self.tokens.range(index).start < start;
+        // From the last token in steps that double, then between the last two steps.
+        let (mut low, mut high) = (self.last, self.last);
+        let mut step = 1;
+        while low > 0 && !is_before(low) {
+            (low, high) = (low.saturating_sub(step), low);
+            step *= 2;
+        }
+        while high < self.tokens.count() && is_before(high) {
+            (low, high) = (high, (high + step).min(self.tokens.count()));
+            step *= 2;
+        }
         while low < high {
             let middle = low.midpoint(high);
-            if self.tokens.range(middle).start < start {
+            if is_before(middle) {
                 low = middle + 1;
             } else {
                 high = middle;
             }
         }
+        self.last = low;
         low
     }
 

@@ -76,7 +76,7 @@ pub(super) fn run(args: &DiffArgs) -> anyhow::Result<ExitCode> {
     }
     output::refuse_inputs(
         &[("--report", args.report.as_ref())],
-        [&old, &new].into_iter().flat_map(|side| &side.read).map(PathBuf::as_path),
+        [&old, &new].into_iter().flat_map(|side| &side.files).map(PathBuf::as_path),
     )?;
     let (model, unknown) = match common::robot_name(&cell, &config, &folder) {
         Some(name) => (Some(effects::load_estimated(&name)?), String::new()),

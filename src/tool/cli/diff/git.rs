@@ -159,7 +159,8 @@ pub(super) fn write(
     let (Some(mut stdin), Some(mut stdout)) = (child.stdin.take(), child.stdout.take()) else {
         bail!("cannot talk to git");
     };
-    let objects: String = files.iter().map(|(object, _)| format!("{object}\n")).collect();
+    let objects: Vec<&str> = files.iter().flat_map(|(object, _)| [object, "\n"]).collect();
+    let objects = objects.concat();
     // git answers before it has read everything, so both directions run at once.
     let asked = std::thread::spawn(move || stdin.write_all(objects.as_bytes()));
     let mut answer = Vec::new();

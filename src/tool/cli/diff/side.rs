@@ -43,7 +43,7 @@ pub(super) struct Read {
     pub(super) name: String,
     pub(super) side: Side,
     /// The files on disk that were read.
-    pub(super) read: Vec<PathBuf>,
+    pub(super) files: Vec<PathBuf>,
     /// The first backup that names a robot, and the robot.
     pub(super) robot: Option<(PathBuf, String)>,
     pub(super) notes: Vec<String>,
@@ -153,7 +153,7 @@ pub(super) fn read(named: Named, entry: Option<&str>) -> anyhow::Result<Read> {
             return Ok(Read {
                 name,
                 side: Side::default(),
-                read: Vec::new(),
+                files: Vec::new(),
                 robot: None,
                 notes: Vec::new(),
                 _folder: None,
@@ -172,7 +172,7 @@ pub(super) fn read(named: Named, entry: Option<&str>) -> anyhow::Result<Read> {
         .map_err(|error| anyhow::anyhow!("{}", shown(&error.to_string())))?;
     let skipped = input.unreadable.iter();
     let notes = skipped.map(|it| format!("skipped '{}': {}", shown(&it.path), it.reason)).collect();
-    let read = match &source {
+    let files = match &source {
         Source::Path(_) => {
             input.files.iter().map(|file| PathBuf::from(&file.source.path)).collect()
         }
@@ -190,7 +190,7 @@ pub(super) fn read(named: Named, entry: Option<&str>) -> anyhow::Result<Read> {
         Source::Revision { folder, .. } => Some(folder),
         _ => None,
     };
-    Ok(Read { name, side, read, robot, notes, _folder: folder })
+    Ok(Read { name, side, files, robot, notes, _folder: folder })
 }
 
 /// The programs of an input: one for each task of a controller, else one.

@@ -52,7 +52,7 @@ struct CycleRows {
 struct Delta {
     old: String,
     new: String,
-    delta: String,
+    by: String,
     /// Whether the new figure is the smaller one, larger, or neither.
     class: &'static str,
 }
@@ -138,7 +138,7 @@ fn delta(old: f64, new: f64, decimals: usize) -> Delta {
     Delta {
         old: fixed(old, decimals),
         new: fixed(new, decimals),
-        delta: format!("{sign}{text}"),
+        by: format!("{sign}{text}"),
         class,
     }
 }
