@@ -5,7 +5,8 @@ use super::rest::{Level, Window, windows};
 use super::series::{Measure, Series};
 use super::side::{EventLog, PowerLog, Side, gap_cause};
 use super::spans::{Source, Span, spans};
-use super::unit::{Kind, LeftOut, POINTS, Period, Unit};
+use super::unit::{Kind, LeftOut, POINTS, Period, Unit, Wait};
+use super::waiting::Waiting;
 use crate::learn::log::Channel;
 use crate::tool::cell::events::{Cycle, Visit, What};
 
@@ -151,6 +152,12 @@ impl Measured {
             }
         }
     }
+
+    /// The power of the waits that the log of events has.
+    pub(super) fn waiting(&self) -> Option<Waiting> {
+        let series = self.places.iter().map(|(log, ..)| &self.series[*log].0);
+        Waiting::of(self.units.iter().zip(series))
+    }
 }
 
 /// The times of several logs on one clock: a log that begins before the end of the last one follows it.
@@ -205,6 +212,14 @@ fn unit(of: &PowerLog, series: &Series, span: &Span, offset: f64) -> Unit {
         let named = of.scan.parts.iter().find(|(known, _)| *known == number);
         named.map_or_else(|| number.to_string(), |(_, name)| name.clone())
     });
+    let waits = recorded.map_or_else(Vec::new, |cycle| {
+        let clock = begin - cycle.start;
+        let wait = |(place, visit): (usize, &Visit)| {
+            let to = visit.ended? + clock;
+            Some(Wait { place, from: visit.came + clock, to })
+        };
+        cycle.visits.iter().enumerate().filter_map(wait).collect()
+    });
     let lasts = end - begin;
     let at = |point: usize| begin + lasts * point as f64 / POINTS as f64;
     Unit {
@@ -212,7 +227,9 @@ fn unit(of: &PowerLog, series: &Series, span: &Span, offset: f64) -> Unit {
         t: begin + offset,
         energy_j: series.energy(end) - series.energy(begin),
         duration_s: lasts,
-        rest_s: recorded.map_or(0.0, |cycle| cycle.visits.iter().filter_map(Visit::length).sum()),
+        rest_s: waits.iter().map(|wait| wait.to - wait.from).sum(),
+        waits,
+        waiting_s: 0.0,
         rest_w: None,
         floor_w: None,
         temperature: column(Channel::Temperature(0)).map(mean),

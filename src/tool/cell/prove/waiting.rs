@@ -1,0 +1,90 @@
+//! What the program before takes while it waits: the power over the time since it came to a wait. A robot that
+//! stands for long closes its brakes, so the next second of a wait costs less than its mean second.
+
+use std::collections::BTreeMap;
+
+use super::series::Series;
+use super::unit::{Unit, Wait};
+
+/// Width of a step of the time since the robot came, s.
+const STEP_S: f64 = 0.1;
+/// Least number of waits that a mean power needs.
+const LEAST: usize = 3;
+
+/// Sums over the waits that last longer than each step.
+#[derive(Clone, Debug, Default)]
+struct Course {
+    energy_j: Vec<f64>,
+    count: Vec<usize>,
+}
+
+impl Course {
+    fn add(&mut self, step: usize, energy_j: f64) {
+        if self.energy_j.len() <= step {
+            self.energy_j.resize(step + 1, 0.0);
+            self.count.resize(step + 1, 0);
+        }
+        self.energy_j[step] += energy_j;
+        self.count[step] += 1;
+    }
+
+    /// Mean power in a step, W.
+    fn power(&self, step: usize) -> Option<f64> {
+        let count = self.count.get(step).filter(|count| **count >= LEAST)?;
+        Some(self.energy_j[step] / STEP_S / *count as f64)
+    }
+}
+
+/// The power while waiting, by the place of the wait in the cycle and over all waits.
+#[derive(Clone, Debug)]
+pub(super) struct Waiting {
+    places: BTreeMap<usize, Course>,
+    all: Course,
+    /// Mean power of all waits, W.
+    pub(super) mean_w: f64,
+}
+
+impl Waiting {
+    /// The power of the waits in these cycles with their logs; `None` if there are too few waits.
+    pub(super) fn of<'a>(cycles: impl Iterator<Item = (&'a Unit, &'a Series)>) -> Option<Waiting> {
+        let (mut places, mut all) = (BTreeMap::<usize, Course>::new(), Course::default());
+        for (unit, series) in cycles {
+            for wait in &unit.waits {
+                for step in 0..steps(wait) {
+                    let from = wait.from + step as f64 * STEP_S;
+                    let energy = series.energy(from + STEP_S) - series.energy(from);
+                    places.entry(wait.place).or_default().add(step, energy);
+                    all.add(step, energy);
+                }
+            }
+        }
+        let count = all.count.iter().sum::<usize>() as f64;
+        let mean_w = all.energy_j.iter().sum::<f64>() / STEP_S / count;
+        (all.power(0).is_some() && mean_w > 0.0).then_some(Waiting { places, all, mean_w })
+    }
+
+    /// Energy of the waits of a cycle if the program before waited for as long, J. Beyond the longest waits at
+    /// a place, waits at other places tell the power, and beyond those their last one.
+    pub(super) fn energy_j(&self, unit: &Unit) -> f64 {
+        unit.waits.iter().map(|wait| self.of_wait(wait)).sum()
+    }
+
+    fn of_wait(&self, wait: &Wait) -> f64 {
+        let own = self.places.get(&wait.place);
+        let mut power = self.mean_w;
+        let mut energy = 0.0;
+        let whole = steps(wait);
+        for step in 0..=whole {
+            let known = own.and_then(|own| own.power(step)).or_else(|| self.all.power(step));
+            power = known.unwrap_or(power);
+            let lasts = if step < whole { STEP_S } else { wait.to - wait.from - whole as f64 * STEP_S };
+            energy += power * lasts.max(0.0);
+        }
+        energy
+    }
+}
+
+/// Whole steps of a wait.
+fn steps(wait: &Wait) -> usize {
+    ((wait.to - wait.from) / STEP_S).max(0.0) as usize
+}
