@@ -18,6 +18,7 @@ use super::strata::{Common, common};
 use super::summary::{adjustments, cycle_time, rest_means, strata};
 use super::unit::{LeftOut, Period, Unit};
 use super::units::{Measured, measured};
+use super::waiting::Waiting;
 
 /// The effects of the power analysis.
 const EFFECTS: [f64; 6] = [0.01, 0.02, 0.03, 0.05, 0.08, 0.1];
@@ -186,10 +187,17 @@ fn rest(sides: &mut [Measured], measure: Measure) -> Option<f64> {
         side.rest(levels.map(|levels| levels[index]), with_events);
     }
     let is_cabinet = measure == Measure::Cabinet;
-    let waiting = if with_events && is_cabinet { sides[0].waiting() } else { None };
-    for unit in sides.iter_mut().flat_map(|side| &mut side.units) {
-        unit.waiting_s =
-            waiting.as_ref().map_or(unit.rest_s, |of| of.energy_j(unit) / of.mean_w);
+    let waiting = match sides {
+        [before, others @ ..] if with_events && is_cabinet => {
+            Waiting::of(before.cycles(), others.iter().flat_map(|side| side.cycles()))
+        }
+        _ => None,
+    };
+    for side in sides.iter_mut() {
+        match &waiting {
+            Some(waiting) => side.wait(waiting),
+            None => side.units.iter_mut().for_each(|unit| unit.waiting_s = unit.rest_s),
+        }
     }
     let mean = |[before, after]: [Level; 2]| 0.5 * (before.power_w + after.power_w);
     waiting.map(|of| of.mean_w).or(levels.map(mean))
@@ -254,8 +262,8 @@ fn doubts(
     apart: f64,
     turned: Turned,
 ) -> Vec<Doubt> {
-    let floor = [0, 1].map(|side: usize| {
-        units[side].iter().filter_map(|(_, unit)| unit.floor_w).collect::<Vec<f64>>()
+    let level = [0, 1].map(|side: usize| {
+        units[side].iter().filter_map(|(_, unit)| unit.level_w).collect::<Vec<f64>>()
     });
     let times =
         [0, 1].map(|side: usize| units[side].iter().map(|(_, unit)| unit.t).collect::<Vec<f64>>());
@@ -263,7 +271,7 @@ fn doubts(
         units[side].iter().map(|(_, unit)| unit.course.as_slice()).collect::<Vec<_>>()
     });
     let found = [
-        meter([&floor[0], &floor[1]], of.saving),
+        meter([&level[0], &level[1]], of.saving),
         drift(of, [&times[0], &times[1]], apart),
         step(&of.residual[0], 0, of.saving),
         step(&of.residual[1], 1, of.saving),

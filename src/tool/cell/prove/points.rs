@@ -27,11 +27,7 @@ pub(super) fn points(sides: &[Vec<(usize, Unit)>; 2]) -> ([Vec<Point>; 2], Optio
 }
 
 /// What is known of the cost of waiting: the power while the robot waits, or anything up to the mean power.
-pub(super) fn prior(
-    measure: Measure,
-    standing_w: Option<f64>,
-    points: &[Vec<Point>; 2],
-) -> Prior {
+pub(super) fn prior(measure: Measure, standing_w: Option<f64>, points: &[Vec<Point>; 2]) -> Prior {
     if measure == Measure::Joints {
         return Prior { mean: 0.0, sd: 0.0 };
     }

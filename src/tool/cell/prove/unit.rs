@@ -63,8 +63,8 @@ pub(super) struct Unit {
     pub(super) waiting_s: f64,
     /// Mean power while it waits, W.
     pub(super) rest_w: Option<f64>,
-    /// Lowest power that lasts, W.
-    pub(super) floor_w: Option<f64>,
+    /// Power while it waits at places and times that all cycles have, else the lowest power that lasts, W.
+    pub(super) level_w: Option<f64>,
     /// Mean temperature, °C.
     pub(super) temperature: Option<f64>,
     /// What it makes.

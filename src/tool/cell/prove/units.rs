@@ -146,17 +146,24 @@ impl Measured {
             let (series, windows) = &self.series[*log];
             unit.rest_w = own.within(series, windows, *begin, *end).1;
             let [first, last] = [*begin, *end].map(|at| series.t.partition_point(|t| *t < at));
-            unit.floor_w = own.floor_within(windows, first..last);
+            unit.level_w = own.floor_within(windows, first..last);
             if !with_events {
                 unit.rest_s = level.within(series, windows, *begin, *end).0;
             }
         }
     }
 
-    /// The power of the waits that the log of events has.
-    pub(super) fn waiting(&self) -> Option<Waiting> {
-        let series = self.places.iter().map(|(log, ..)| &self.series[*log].0);
-        Waiting::of(self.units.iter().zip(series))
+    /// The cycles with their logs.
+    pub(super) fn cycles(&self) -> impl Iterator<Item = (&Unit, &Series)> {
+        self.units.iter().zip(self.places.iter().map(|(log, ..)| &self.series[*log].0))
+    }
+
+    /// Fills in what waits of these cycles would have taken before, from the log of events.
+    pub(super) fn wait(&mut self, of: &Waiting) {
+        for (unit, (log, ..)) in self.units.iter_mut().zip(&self.places) {
+            unit.waiting_s = of.energy_j(unit) / of.mean_w;
+            unit.level_w = of.level_w(unit, &self.series[*log].0);
+        }
     }
 }
 
@@ -231,7 +238,7 @@ fn unit(of: &PowerLog, series: &Series, span: &Span, offset: f64) -> Unit {
         waits,
         waiting_s: 0.0,
         rest_w: None,
-        floor_w: None,
+        level_w: None,
         temperature: column(Channel::Temperature(0)).map(mean),
         kind: Kind {
             part,

@@ -10,6 +10,8 @@ use super::unit::{Unit, Wait};
 const STEP_S: f64 = 0.1;
 /// Least number of waits that a mean power needs.
 const LEAST: usize = 3;
+/// Least number of steps by which a cycle is compared.
+const COMPARED: usize = 8;
 
 /// Sums over the waits that last longer than each step.
 #[derive(Clone, Debug, Default)]
@@ -40,31 +42,54 @@ impl Course {
 pub(super) struct Waiting {
     places: BTreeMap<usize, Course>,
     all: Course,
+    /// All waits of the other side.
+    after: Course,
     /// Mean power of all waits, W.
     pub(super) mean_w: f64,
 }
 
 impl Waiting {
-    /// The power of the waits in these cycles with their logs; `None` if there are too few waits.
-    pub(super) fn of<'a>(cycles: impl Iterator<Item = (&'a Unit, &'a Series)>) -> Option<Waiting> {
+    /// The power of the waits in cycles with their logs, before and after; `None` if there are too few waits
+    /// before.
+    pub(super) fn of<'a>(
+        before: impl Iterator<Item = (&'a Unit, &'a Series)>,
+        after: impl Iterator<Item = (&'a Unit, &'a Series)>,
+    ) -> Option<Waiting> {
         let (mut places, mut all) = (BTreeMap::<usize, Course>::new(), Course::default());
-        for (unit, series) in cycles {
-            for wait in &unit.waits {
-                for step in 0..steps(wait) {
-                    let from = wait.from + step as f64 * STEP_S;
-                    let energy = series.energy(from + STEP_S) - series.energy(from);
-                    places.entry(wait.place).or_default().add(step, energy);
-                    all.add(step, energy);
-                }
+        for (unit, series) in before {
+            for (place, step, energy) in energies(unit, series) {
+                places.entry(place).or_default().add(step, energy);
+                all.add(step, energy);
+            }
+        }
+        let mut others = Course::default();
+        for (unit, series) in after {
+            for (_, step, energy) in energies(unit, series) {
+                others.add(step, energy);
             }
         }
         let count = all.count.iter().sum::<usize>() as f64;
         let mean_w = all.energy_j.iter().sum::<f64>() / STEP_S / count;
-        (all.power(0).is_some() && mean_w > 0.0).then_some(Waiting { places, all, mean_w })
+        let is_known = all.power(0).is_some() && mean_w > 0.0;
+        is_known.then_some(Waiting { places, all, after: others, mean_w })
+    }
+
+    /// The power while a cycle waits, W: that of all waits before, times what this cycle takes over what the
+    /// program before took at the same places after the same time. `None` if too few waits can be compared.
+    pub(super) fn level_w(&self, unit: &Unit, series: &Series) -> Option<f64> {
+        let (mut own, mut usual, mut count) = (0.0, 0.0, 0);
+        for (place, step, energy) in energies(unit, series) {
+            if let Some(power) = self.places.get(&place).and_then(|course| course.power(step)) {
+                own += energy;
+                usual += power * STEP_S;
+                count += 1;
+            }
+        }
+        (count >= COMPARED && usual > 0.0).then(|| self.mean_w * own / usual)
     }
 
     /// Energy of the waits of a cycle if the program before waited for as long, J. Beyond the longest waits at
-    /// a place, waits at other places tell the power, and beyond those their last one.
+    /// a place, waits at other places tell the power, then waits of the other side, at last the last power.
     pub(super) fn energy_j(&self, unit: &Unit) -> f64 {
         unit.waits.iter().map(|wait| self.of_wait(wait)).sum()
     }
@@ -76,12 +101,23 @@ impl Waiting {
         let whole = steps(wait);
         for step in 0..=whole {
             let known = own.and_then(|own| own.power(step)).or_else(|| self.all.power(step));
-            power = known.unwrap_or(power);
-            let lasts = if step < whole { STEP_S } else { wait.to - wait.from - whole as f64 * STEP_S };
+            power = known.or_else(|| self.after.power(step)).unwrap_or(power);
+            let lasts =
+                if step < whole { STEP_S } else { wait.to - wait.from - whole as f64 * STEP_S };
             energy += power * lasts.max(0.0);
         }
         energy
     }
+}
+
+/// Place, step and energy \[J\] of all whole steps of the waits of a cycle.
+fn energies(unit: &Unit, series: &Series) -> impl Iterator<Item = (usize, usize, f64)> {
+    unit.waits.iter().flat_map(move |wait| {
+        (0..steps(wait)).map(move |step| {
+            let from = wait.from + step as f64 * STEP_S;
+            (wait.place, step, series.energy(from + STEP_S) - series.energy(from))
+        })
+    })
 }
 
 /// Whole steps of a wait.
