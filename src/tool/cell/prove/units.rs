@@ -64,8 +64,9 @@ pub(super) fn measured(
         if series.kilowatts {
             found.notes.push(format!("{}: the power is in kW", log.shown));
         }
-        let events = paired(&series, &sessions, index, side.logs.len());
-        let (source, spans) = spans(log, &series, events)?;
+        let own =
+            if sessions.len() == side.logs.len() { index..index + 1 } else { 0..sessions.len() };
+        let (source, spans) = spans(log, &series, &sessions[own])?;
         found.by_power |= source == Source::Power;
         if source == Source::Power {
             let text = "no column `cycle`: the cycles were found by the power alone";
@@ -179,26 +180,6 @@ impl Clock {
         self.end = Some(last + offset);
         offset
     }
-}
-
-/// The session of the recorder that belongs to a log: the one in its place, else the one that covers
-/// most of its time.
-fn paired<'a>(
-    series: &Series,
-    sessions: &[(&'a EventLog, usize)],
-    index: usize,
-    logs: usize,
-) -> Option<(&'a EventLog, usize)> {
-    if sessions.len() == logs {
-        return sessions.get(index).copied();
-    }
-    let [first, last] = series.range();
-    let common = |of: &(&EventLog, usize)| {
-        let events = &of.0.recording.sessions[of.1].events;
-        let ends = events.first().zip(events.last());
-        ends.map_or(0.0, |(a, b)| (b.t.min(last) - a.t.max(first)).max(0.0))
-    };
-    sessions.iter().copied().max_by(|a, b| common(a).total_cmp(&common(b)))
 }
 
 /// The shortest cycle that the log has not cut; without one, nothing tells whether the others are whole.

@@ -10,8 +10,8 @@ use super::unit::{Unit, Wait};
 const STEP_S: f64 = 0.1;
 /// Least number of waits that a mean power needs.
 const LEAST: usize = 3;
-/// Least number of steps by which a cycle is compared.
-const COMPARED: usize = 8;
+/// Samples at both ends of a wait in which a meter that averages may still show the motion.
+const EDGE: f64 = 2.0;
 
 /// Sums over the waits that last longer than each step.
 #[derive(Clone, Debug, Default)]
@@ -75,17 +75,16 @@ impl Waiting {
     }
 
     /// The power while a cycle waits, W: that of all waits before, times what this cycle takes over what the
-    /// program before took at the same places after the same time. `None` if too few waits can be compared.
+    /// program before took at the same places after the same time. `None` if no wait can be compared.
     pub(super) fn level_w(&self, unit: &Unit, series: &Series) -> Option<f64> {
-        let (mut own, mut usual, mut count) = (0.0, 0.0, 0);
+        let (mut own, mut usual) = (0.0, 0.0);
         for (place, step, energy) in energies(unit, series) {
             if let Some(power) = self.places.get(&place).and_then(|course| course.power(step)) {
                 own += energy;
                 usual += power * STEP_S;
-                count += 1;
             }
         }
-        (count >= COMPARED && usual > 0.0).then(|| self.mean_w * own / usual)
+        (usual > 0.0).then(|| self.mean_w * own / usual)
     }
 
     /// Energy of the waits of a cycle if the program before waited for as long, J. Beyond the longest waits at
@@ -110,11 +109,13 @@ impl Waiting {
     }
 }
 
-/// Place, step and energy \[J\] of all whole steps of the waits of a cycle.
+/// Place, step and energy \[J\] of all whole steps of the waits of a cycle in which the robot surely stands.
 fn energies(unit: &Unit, series: &Series) -> impl Iterator<Item = (usize, usize, f64)> {
+    let edge = EDGE * series.step;
     unit.waits.iter().flat_map(move |wait| {
-        (0..steps(wait)).map(move |step| {
-            let from = wait.from + step as f64 * STEP_S;
+        let inner = Wait { from: wait.from + edge, to: wait.to - edge, ..*wait };
+        (0..steps(&inner)).map(move |step| {
+            let from = inner.from + step as f64 * STEP_S;
             (wait.place, step, series.energy(from + STEP_S) - series.energy(from))
         })
     })
