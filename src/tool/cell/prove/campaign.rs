@@ -189,7 +189,7 @@ fn rest(sides: &mut [Measured], measure: Measure) -> Option<f64> {
     let is_cabinet = measure == Measure::Cabinet;
     let waiting = match sides {
         [before, others @ ..] if with_events && is_cabinet => {
-            Waiting::of(before.cycles(), others.iter().flat_map(|side| side.cycles()))
+            Waiting::of(before.cycles(), others.iter().flat_map(Measured::cycles))
         }
         _ => None,
     };
