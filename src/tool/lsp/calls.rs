@@ -8,7 +8,7 @@ use gen_lsp_types::{
 
 use super::entity::{Declared, declared, entity};
 use super::workspace::View;
-use crate::rapid::names::{Kind, Meaning, Names, Role, RoutineKind};
+use crate::rapid::names::{DeclarationId, Kind, Meaning, Names, Role, RoutineKind};
 use crate::rapid::text::{FileId, Span};
 
 /// The routines that the identifier at a byte names.
@@ -73,7 +73,7 @@ fn is_own_routine(one: Declared<'_>) -> bool {
 
 /// The routine around a byte.
 fn routine_at(names: &Names, file: FileId, byte: u32) -> Option<Declared<'_>> {
-    let around = |id: &crate::rapid::names::DeclarationId| {
+    let around = |id: &DeclarationId| {
         let whole = names.declaration(*id).whole;
         whole.file == file && whole.start <= byte && byte < whole.end
     };

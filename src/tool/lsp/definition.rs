@@ -2,10 +2,11 @@
 
 use gen_lsp_types::{DocumentHighlight, DocumentHighlightKind, Location};
 
-use super::entity::{declared, entity};
+use super::entity::{alike, declared, entity};
 use super::workspace::View;
 use super::writes::is_written;
 use crate::rapid::names::Role;
+use crate::rapid::text::Span;
 
 /// The declarations of the identifier at a byte; none of a predefined one.
 pub(super) fn definition(view: View<'_>, byte: u32) -> Vec<Location> {
@@ -44,14 +45,14 @@ pub(super) fn highlights(view: View<'_>, byte: u32) -> Vec<DocumentHighlight> {
     let file = view.file;
     let places: Vec<_> = match entity(view, byte) {
         Some(entity) => entity.uses.into_keys().filter(|span| span.file == file).collect(),
-        None => super::entity::alike(view, byte),
+        None => alike(view, byte),
     };
     let parse = view.project.module(file).parse();
     let kind = |start: u32| match is_written(&parse.tree, start) {
         true => DocumentHighlightKind::Write,
         false => DocumentHighlightKind::Read,
     };
-    let highlight = |span: crate::rapid::text::Span| DocumentHighlight {
+    let highlight = |span: Span| DocumentHighlight {
         range: view.positions().range(span),
         kind: Some(kind(span.start)),
     };

@@ -4,7 +4,6 @@ use gen_lsp_types::{
     CompletionItem, CompletionItemKind, CompletionItemTextEdit, InsertTextFormat, TextEdit,
 };
 
-use super::Form;
 use crate::rapid::names::{Declaration, DeclarationId, Kind, RoutineKind, Storage};
 use crate::rapid::text::Span;
 use crate::tool::lsp::cursor::Cursor;
@@ -18,6 +17,15 @@ pub(super) struct Entry {
     pub(super) what: What,
     /// What is inserted: text, and the same with places to fill in.
     pub(super) snippet: Option<String>,
+}
+
+/// Whether the client can fill in the places of a snippet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::tool::lsp) enum Form {
+    /// It can.
+    Snippet,
+    /// It inserts text.
+    Plain,
 }
 
 /// What a completion is.

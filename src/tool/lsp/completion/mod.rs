@@ -11,21 +11,13 @@ mod wanted;
 use gen_lsp_types::CompletionList;
 
 use self::item::Entry;
+pub(super) use self::item::Form;
 use super::cursor::Cursor;
 use super::scope::Scope;
 use super::workspace::View;
 
 /// Most entries in one answer.
 const MOST: usize = 500;
-
-/// Whether the client can fill in the places of a snippet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Form {
-    /// It can.
-    Snippet,
-    /// It inserts text.
-    Plain,
-}
 
 /// What may stand at a byte.
 pub(super) fn completion(view: View<'_>, byte: u32, form: Form) -> Option<CompletionList> {

@@ -9,6 +9,7 @@ use crate::rapid::syntax::TokenKind;
 use crate::tool::lsp::cursor::Cursor;
 use crate::tool::lsp::scope::Scope;
 use crate::tool::lsp::signature::name;
+use crate::tool::lsp::tokens::token_at;
 
 pub(super) fn offers(scope: &Scope<'_>, cursor: &Cursor<'_>, wanted: &Wanted) -> Vec<Entry> {
     let offers = Offers { scope, cursor };
@@ -170,7 +171,7 @@ impl Offers<'_, '_> {
     /// The kind of the token behind the cursor.
     fn next(&self) -> Option<TokenKind> {
         let tokens = self.cursor.module.parse().tree.tokens();
-        let at = crate::tool::lsp::tokens::token_at(tokens, self.cursor.byte);
+        let at = token_at(tokens, self.cursor.byte);
         (at < tokens.count()).then(|| tokens.kind(at))
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Refusal, place};
+use super::refusal::{Refusal, place};
 use crate::rapid::names::{Names, SourceText, Use};
 use crate::rapid::syntax::{Parse, parse};
 use crate::rapid::text::{Edit, FileId, SourceFile, Span};

@@ -1,6 +1,6 @@
 //! Declarations that have the new name already.
 
-use super::{Refusal, place};
+use super::refusal::{Refusal, place};
 use crate::rapid::names::{DeclarationId, Kind, Meaning, Names, Reach};
 use crate::rapid::text::Span;
 use crate::tool::lsp::entity::{Entity, is_shared};

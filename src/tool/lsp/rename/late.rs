@@ -1,6 +1,6 @@
 //! Names in strings: procedures that are called by a string, and names whose meaning is not known.
 
-use super::{Refusal, place};
+use super::refusal::{Refusal, place};
 use crate::rapid::names::{Kind, Meaning, Role, RoutineKind};
 use crate::rapid::syntax::{Node, NodeKind};
 use crate::rapid::text::{FileId, Span};

@@ -1,92 +1,27 @@
 //! Renaming over all files of a project.
 //!
-//! `new_name` tells whether a text can be a name, `clash` whether another declaration has it, `late`
+//! `new_name` tells whether a text can be a name, `clash` whether another declaration has it, `entry`
+//! whether the controller looks for the old one, `late`
 //! finds the strings that call a procedure by its name, `check` reads the result again: if any
-//! identifier would mean something else than before, nothing is renamed.
+//! identifier would mean something else than before, nothing is renamed. `refusal` has the reasons.
 
 mod check;
 mod clash;
+mod entry;
 mod late;
 mod new_name;
+mod refusal;
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use gen_lsp_types::{Range, TextEdit, WorkspaceEdit};
 
 use self::late::Strings;
+pub(super) use self::refusal::Refusal;
 use super::entity::{Declared, declared, entity, identifier};
 use super::workspace::View;
 use crate::rapid::names::{Kind, Meaning, Role};
 use crate::rapid::text::{Edit, FileId, Span};
-
-/// Why a name stays.
-#[derive(Debug, thiserror::Error)]
-pub(super) enum Refusal {
-    /// There is no name.
-    #[error("there is no name here")]
-    NoName,
-    /// It is predefined.
-    #[error("'{0}' belongs to RAPID or RobotWare and cannot be renamed")]
-    BuiltIn(String),
-    /// No file declares it.
-    #[error("no file of the workspace declares '{0}': open the folder with its declaration")]
-    NotDeclared(String),
-    /// The new name is none.
-    #[error("'{0}' is no name: use letters, digits and _, with a letter first")]
-    NotAName(String),
-    /// The new name is too long.
-    #[error("'{name}' has {length} characters: a name of RAPID has at most 32")]
-    TooLong {
-        /// The new name.
-        name: String,
-        /// Its length.
-        length: usize,
-    },
-    /// The new name is a keyword.
-    #[error("'{0}' is a reserved word of RAPID: choose another name")]
-    Keyword(String),
-    /// The new name is predefined.
-    #[error("'{0}' is a name of RAPID or RobotWare: choose another one")]
-    Taken(String),
-    /// The encoding of a file lacks a letter of the new name.
-    #[error("{file} is {encoding}, which cannot hold '{name}': choose letters that it has")]
-    Encoding {
-        /// The file.
-        file: String,
-        /// Its encoding.
-        encoding: &'static str,
-        /// The new name.
-        name: String,
-    },
-    /// Another declaration in the same scope has the new name.
-    #[error("'{name}' is declared at {place}: choose another name")]
-    Clash {
-        /// The new name.
-        name: String,
-        /// Where it is declared.
-        place: String,
-    },
-    /// Another declaration would be meant.
-    #[error(
-        "with the name '{name}', what stands at {place} would mean another declaration: choose another name"
-    )]
-    Captured {
-        /// The new name.
-        name: String,
-        /// An identifier that would change its meaning.
-        place: String,
-    },
-    /// Whether it is meant is not known.
-    #[error("'{name}' at {place} may mean it, too, which is not known: {why}")]
-    Doubtful {
-        /// The old name.
-        name: String,
-        /// The place.
-        place: String,
-        /// Why it is not known.
-        why: &'static str,
-    },
-}
 
 /// The identifier that would be renamed, and its text.
 pub(super) fn prepare(view: View<'_>, byte: u32) -> Result<(Range, String), Refusal> {
@@ -101,6 +36,7 @@ pub(super) fn rename(view: View<'_>, byte: u32, new: &str) -> Result<WorkspaceEd
     let key = new_name::checked(new)?;
     let Some(entity) = entity(view, byte) else { return Err(Refusal::NoName) };
     if key != old.to_lowercase() {
+        entry::check(view, &entity)?;
         clash::check(view, &entity, new, &key)?;
     }
     let kind = found.declaration().kind;
@@ -150,11 +86,4 @@ fn target(view: View<'_>, byte: u32) -> Result<(Span, Declared<'_>), Refusal> {
         }
         Meaning::Late | Meaning::Open | Meaning::Unknown => Err(Refusal::NotDeclared(text())),
     }
-}
-
-/// A place for messages: file and line.
-fn place(view: View<'_>, span: Span) -> String {
-    let file = &view.project.module(span.file).file;
-    let name = file.path.rsplit('/').next().unwrap_or(&file.path);
-    format!("{name}:{}", file.position(span.start).line)
 }

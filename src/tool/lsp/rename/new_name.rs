@@ -1,6 +1,6 @@
 //! Whether a text can be a name.
 
-use super::Refusal;
+use super::refusal::Refusal;
 use crate::rapid::builtins;
 use crate::rapid::names::Names;
 use crate::rapid::syntax::{TokenKind, tokenize};
