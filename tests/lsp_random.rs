@@ -178,7 +178,7 @@ fn decoded_bytes(file: &SourceFile, bytes: &[u8]) -> String {
 /// A name with this many letters that nothing has.
 fn fresh(rng: &mut Rng, length: usize, words: &BTreeSet<String>) -> Option<String> {
     (0..100).find_map(|_| {
-        let name: String = (0..length).map(|_| rng.choice("abqwxz".chars()).unwrap()).collect();
+        let name: String = (0..length).map(|_| *rng.choice(&['a', 'b', 'q', 'w', 'x', 'z']).unwrap()).collect();
         let reserved = syntax::tokenize(name.as_bytes()).kind(0).is_keyword();
         let used = words.contains(&name) || joulepath::rapid::builtins::is_known(&name);
         (!reserved && !used).then_some(name)

@@ -105,7 +105,7 @@ fn impossible_names_are_refused_with_the_reason() {
         (1, "robtarget", "is a name of RAPID"),
         (1, "v100", "is a name of RAPID"),
         (1, "tool0", "is a name of RAPID"),
-        (1, "ERR_OVERFLOW", "is a name of RAPID"),
+        (1, "ERR_DIVZERO", "is a name of RAPID"),
         // In the same module, in another one, the name of a module.
         (1, "ncount", "'ncount' is declared at Main.mod:3"),
         (1, "rUse", "'rUse' is declared at Lib.sys:10"),

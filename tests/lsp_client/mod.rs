@@ -15,7 +15,7 @@ use joulepath::rapid::format::Style;
 use joulepath::rapid::text::{FileId, SourceFile};
 use joulepath::tool::lint::Programs;
 use joulepath::tool::lsp::{Host, LspError, Options, ProjectFiles, TaskFiles, serve_on};
-use lsp_server::{Connection, Message, Notification, Request, Response};
+use lsp_server::{Connection, Message, Notification, Request, ResponseError};
 use serde_json::{Value, json};
 
 /// The folder of the workspace.
@@ -118,25 +118,22 @@ impl Client {
     }
 
     pub(crate) fn request(&mut self, method: &str, params: Value) -> Value {
-        let response = self.answer(method, params);
-        assert!(response.error.is_none(), "{method}: {:?}", response.error);
-        response.result.unwrap_or(Value::Null)
+        self.answer(method, params).unwrap_or_else(|error| panic!("{method}: {error:?}"))
     }
 
     /// The message of the error in the answer to a request.
     pub(crate) fn refusal(&mut self, method: &str, params: Value) -> String {
-        let response = self.answer(method, params);
-        response.error.unwrap_or_else(|| panic!("{method}: {:?}", response.result)).message
+        self.answer(method, params).expect_err(method).message
     }
 
-    fn answer(&mut self, method: &str, params: Value) -> Response {
+    fn answer(&mut self, method: &str, params: Value) -> Result<Value, ResponseError> {
         self.next += 1;
         let request = Request::new(self.next.into(), method.to_owned(), params);
         let id = request.id.clone();
         self.connection.sender.send(Message::Request(request)).unwrap();
         loop {
             match self.connection.receiver.recv().unwrap() {
-                Message::Response(response) if response.id == id => return response,
+                Message::Response(response) if response.id == id => return response.response_result,
                 other => self.note(other),
             }
         }
@@ -188,11 +185,8 @@ impl Client {
         place: &Place,
         new: &str,
     ) -> Result<BTreeMap<String, Vec<Value>>, String> {
-        let response = self.answer("textDocument/rename", place.renaming(new));
-        match response.error {
-            Some(error) => Err(error.message),
-            None => Ok(edits(&response.result.unwrap())),
-        }
+        let answer = self.answer("textDocument/rename", place.renaming(new));
+        answer.map(|answer| edits(&answer)).map_err(|error| error.message)
     }
 
     /// The edits of a rename by file.
