@@ -133,7 +133,9 @@ impl Client {
         self.connection.sender.send(Message::Request(request)).unwrap();
         loop {
             match self.connection.receiver.recv().unwrap() {
-                Message::Response(response) if response.id == id => return response.response_result,
+                Message::Response(response) if response.id == id => {
+                    return response.response_result;
+                }
                 other => self.note(other),
             }
         }

@@ -94,14 +94,26 @@ impl<'v> Scope<'v> {
         record.into_iter().flat_map(|record| self.names.inside(record))
     }
 
-    /// Whether a value of one type can be given for another, as far as both are known.
-    pub(super) fn fits(&self, wanted: ValueType, given: ValueType) -> bool {
+    /// How well a value of one type can be given for another, as far as both are known.
+    pub(super) fn fit(&self, wanted: ValueType, given: ValueType) -> Fit {
         let base = |value: ValueType| value.declaration.and_then(|id| self.names.base(id));
         match (base(wanted), base(given)) {
-            (Some(wanted), Some(given)) => wanted == given,
-            _ => false,
+            (Some(_), Some(_)) if wanted.declaration == given.declaration => Fit::Same,
+            (Some(wanted), Some(given)) if wanted == given => Fit::Alike,
+            _ => Fit::Other,
         }
     }
+}
+
+/// How well a type fits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Fit {
+    /// It is the type.
+    Same,
+    /// It stands for the same: `intnum` for `num`.
+    Alike,
+    /// It is another one, or is not known.
+    Other,
 }
 
 /// The start of the group that ends with the last word.

@@ -47,7 +47,9 @@ pub(super) enum What {
 pub(super) enum Rank {
     /// What has the type that is needed.
     Fitting,
-    /// What has it and is predefined.
+    /// What has a type that stands for the same.
+    Alike,
+    /// What has one of these types and is predefined.
     FittingBuiltIn,
     /// Names of the program.
     Own,

@@ -7,7 +7,7 @@ use crate::rapid::builtins::{self, function, instruction, routine_names};
 use crate::rapid::names::{Basic, DeclarationId, Kind, Mode, Names, RoutineKind, ValueType};
 use crate::rapid::syntax::TokenKind;
 use crate::tool::lsp::cursor::Cursor;
-use crate::tool::lsp::scope::Scope;
+use crate::tool::lsp::scope::{Fit, Scope};
 use crate::tool::lsp::signature::name;
 use crate::tool::lsp::tokens::token_at;
 
@@ -135,9 +135,7 @@ impl Offers<'_, '_> {
         for entry in &mut entries {
             let What::Declared(id) = entry.what else { continue };
             let declaration = names.declaration(id);
-            if self.scope.fits(of_type, declaration.value) {
-                entry.rank = fitting(entry.rank);
-            }
+            entry.rank = fitting(entry.rank, self.scope.fit(of_type, declaration.value));
             if is_function(declaration.kind) && !before_list {
                 entry.snippet = Some(function_call(&entry.label, &self.required(id)));
             }
@@ -162,8 +160,8 @@ impl Offers<'_, '_> {
         let others = ["fine", "vmax", "tool0", "wobj0", "load0", "pi"].map(str::to_owned);
         speeds.chain(zones).chain(others).map(move |label| {
             let type_name = builtins::predefined(&label).map_or("", |data| data.type_name);
-            let fits = self.scope.fits(of_type, self.scope.of_type(type_name));
-            let rank = if fits { fitting(Rank::BuiltIn) } else { Rank::BuiltIn };
+            let fit = self.scope.fit(of_type, self.scope.of_type(type_name));
+            let rank = fitting(Rank::BuiltIn, fit);
             Entry { label, rank, what: What::Constant, snippet: None }
         })
     }
@@ -176,10 +174,12 @@ impl Offers<'_, '_> {
     }
 }
 
-fn fitting(rank: Rank) -> Rank {
-    match rank {
-        Rank::BuiltIn | Rank::FittingBuiltIn => Rank::FittingBuiltIn,
-        Rank::Fitting | Rank::Own | Rank::Keyword => Rank::Fitting,
+fn fitting(rank: Rank, fit: Fit) -> Rank {
+    match (rank, fit) {
+        (rank, Fit::Other) => rank,
+        (Rank::BuiltIn, _) => Rank::FittingBuiltIn,
+        (_, Fit::Same) => Rank::Fitting,
+        (_, Fit::Alike) => Rank::Alike,
     }
 }
 
