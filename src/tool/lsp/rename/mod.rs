@@ -1,13 +1,14 @@
 //! Renaming over all files of a project.
 //!
-//! `new_name` tells whether a text can be a name, `clash` whether another declaration has it, `entry`
-//! whether the controller looks for the old one, `late`
-//! finds the strings that call a procedure by its name, `check` reads the result again: if any
+//! `new_name` tells whether a text can be a name, `clash` whether another declaration has it, `hidden`
+//! whether data would hide a called routine, `entry` whether the controller looks for the old name.
+//! `late` finds the strings that call a procedure by its name, `check` reads the result again: if any
 //! identifier would mean something else than before, nothing is renamed. `refusal` has the reasons.
 
 mod check;
 mod clash;
 mod entry;
+mod hidden;
 mod late;
 mod new_name;
 mod refusal;
@@ -35,11 +36,12 @@ pub(super) fn rename(view: View<'_>, byte: u32, new: &str) -> Result<WorkspaceEd
     let old = view.project.text(span).into_owned();
     let key = new_name::checked(new)?;
     let Some(entity) = entity(view, byte) else { return Err(Refusal::NoName) };
+    let kind = found.declaration().kind;
     if key != old.to_lowercase() {
         entry::check(view, &entity)?;
         clash::check(view, &entity, new, &key)?;
+        hidden::check(view, &entity, kind, new, &key)?;
     }
-    let kind = found.declaration().kind;
     late::doubtful(view, &entity, kind, &old)?;
     let mut places: BTreeSet<Span> = entity.uses.keys().copied().collect();
     places.extend(late::strings(view, &entity, &old, Strings::of(kind)));
