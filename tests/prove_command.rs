@@ -253,7 +253,7 @@ fn the_meter_is_checked() {
     let off = Made { gain: 0.96, ..Made::new(16) };
     let proof = campaign.proof(&Made::new(15), &off);
     assert_ne!(proof["verdict"], "saves", "{proof:#}");
-    assert!(mentions(&proof, "lowest power that lasts is"), "{proof:#}");
+    assert!(mentions(&proof, "while the robot stands, the power is"), "{proof:#}");
     // Waits used up by slow motion are no other power at rest.
     let creeps = Made { creep_w: 45.0, ..Made::new(31).saving(0.05) };
     let proof = campaign.proof(&Made::new(15), &creeps);

@@ -15,6 +15,8 @@ const EXCITED: f64 = 0.5;
 const LEAST: f64 = 0.2;
 /// Largest displacement of the border of a block, over its length.
 const UNEVEN: f64 = 0.15;
+/// Part of a block that has to be long enough already.
+const ENOUGH: f64 = 0.75;
 
 /// Rows of the blocks in each part.
 #[derive(Clone, Debug, PartialEq)]
@@ -93,8 +95,9 @@ fn excitation(arm: &Arm, part: &[Vec<usize>]) -> f64 {
     (0..arm.dof()).map(of_joint).fold(f64::INFINITY, f64::min)
 }
 
-/// Whether `identify` can differentiate a block.
+/// Whether `identify` can differentiate a block, even with a narrower filter.
 fn is_long_enough(arm: &Arm, rows: &[usize]) -> bool {
+    let rows = &rows[..(ENOUGH * rows.len() as f64) as usize];
     let column = |values: &dyn Fn(usize) -> f64| rows.iter().map(|row| values(*row)).collect();
     let mut channels = vec![Channel::Time];
     let mut columns: Vec<Vec<f64>> = vec![column(&|row| arm.motion.t[row])];

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::alignment::{Trailing, align};
 use super::gap::Gap;
-use super::layout::{Layout, Start};
+use super::layout::{Layout, Start, closes};
 use super::protected::Protected;
 use super::spacing::{self, Word};
 use super::style::{KeywordCase, Style};
@@ -255,21 +255,5 @@ fn divides(kind: TokenKind) -> bool {
             | TokenKind::Backward
             | TokenKind::Error
             | TokenKind::Undo
-    )
-}
-
-/// Words that end a block of statements.
-fn closes(kind: TokenKind) -> bool {
-    matches!(
-        kind,
-        TokenKind::EndIf
-            | TokenKind::EndFor
-            | TokenKind::EndWhile
-            | TokenKind::EndTest
-            | TokenKind::EndProc
-            | TokenKind::EndFunc
-            | TokenKind::EndTrap
-            | TokenKind::EndRecord
-            | TokenKind::EndModule
     )
 }

@@ -110,18 +110,7 @@ impl Walk<'_> {
     /// The own keywords of a block that close it or begin a part of it.
     fn closers(&mut self, node: Node<'_>, steps: usize) {
         for token in node.own_tokens() {
-            if matches!(
-                token.kind(),
-                TokenKind::EndIf
-                    | TokenKind::EndFor
-                    | TokenKind::EndWhile
-                    | TokenKind::EndTest
-                    | TokenKind::EndProc
-                    | TokenKind::EndFunc
-                    | TokenKind::EndTrap
-                    | TokenKind::EndRecord
-                    | TokenKind::EndModule
-            ) {
+            if closes(token.kind()) {
                 self.begin(token.range().start, steps, Start::Line);
             }
         }
@@ -216,4 +205,20 @@ fn begins_line(kind: NodeKind) -> bool {
                 | NodeKind::DefaultBranch
                 | NodeKind::Placeholder
         )
+}
+
+/// Words that end a block of statements.
+pub(super) fn closes(kind: TokenKind) -> bool {
+    matches!(
+        kind,
+        TokenKind::EndIf
+            | TokenKind::EndFor
+            | TokenKind::EndWhile
+            | TokenKind::EndTest
+            | TokenKind::EndProc
+            | TokenKind::EndFunc
+            | TokenKind::EndTrap
+            | TokenKind::EndRecord
+            | TokenKind::EndModule
+    )
 }

@@ -11,13 +11,14 @@ use super::plan::{FEWEST, needed};
 use super::points::{points, prior};
 use super::proof::{Estimated, Plan, Proof, Settings, Verdict};
 use super::rest::Level;
-use super::series::measure;
+use super::series::{Measure, measure};
 use super::side::{PowerLog, Side};
 use super::stamp::seconds;
 use super::strata::{Common, common};
 use super::summary::{adjustments, cycle_time, rest_means, strata};
 use super::unit::{LeftOut, Period, Unit};
 use super::units::{Measured, measured};
+use super::waiting::Waiting;
 
 /// The effects of the power analysis.
 const EFFECTS: [f64; 6] = [0.01, 0.02, 0.03, 0.05, 0.08, 0.1];
@@ -44,7 +45,7 @@ pub fn prove(before: &Side, after: &Side, settings: Settings) -> Result<Proof, P
     let mut measured =
         [measured(before, Period::Before, measure)?, measured(after, Period::After, measure)?];
     check_levels(&measured)?;
-    let levels = rest(&mut measured);
+    let standing_w = rest(&mut measured, measure);
     let is_by_power = measured.iter().any(|side| side.by_power);
     let turned = if is_by_power { Turned::Anyhow } else { Turned::Alike };
     let mut notes = notes(sides, &programs);
@@ -57,14 +58,14 @@ pub fn prove(before: &Side, after: &Side, settings: Settings) -> Result<Proof, P
     notes.extend(of_kinds);
     let (keep, faults) = kept(&units, names.len());
     let all = points(&units).0;
-    let with_faults = estimate([&all[0], &all[1]], names.len(), prior(measure, levels, &all));
+    let with_faults = estimate([&all[0], &all[1]], names.len(), prior(measure, standing_w, &all));
     let has_faults = !faults.is_empty();
     left_out.extend(faults);
     let units = filtered(units, &keep);
     let (points, said) = points(&units);
     notes.extend(said);
     let sizes = [points[0].len(), points[1].len()];
-    let prior = prior(measure, levels, &points);
+    let prior = prior(measure, standing_w, &points);
     let slices = [points[0].as_slice(), points[1].as_slice()];
     let of = estimate(slices, names.len(), prior).ok_or_else(|| ProveError::NoCycles {
         file: "--before and --after".to_owned(),
@@ -119,15 +120,15 @@ pub fn plan(before: &Side, settings: Settings) -> Result<Plan, ProveError> {
     before.program()?;
     let logs: Vec<&PowerLog> = before.logs.iter().collect();
     let measure = measure(&logs)?;
-    let mut side = measured(before, Period::Before, measure)?;
-    let level = side.level;
-    side.rest(level, side.has_events);
+    let mut side = [measured(before, Period::Before, measure)?];
+    let standing_w = rest(&mut side, measure);
+    let [side] = side;
     let twice = [side.units.clone(), side.units];
     let found = common(twice)?;
     let (keep, faults) = kept(&found.sides, found.names.len());
     let units = filtered(found.sides, &keep);
     let (points, said) = points(&units);
-    let prior = prior(measure, [level, level], &points);
+    let prior = prior(measure, standing_w, &points);
     let slices = [points[0].as_slice(), points[1].as_slice()];
     let of = estimate(slices, found.names.len(), prior).ok_or_else(|| ProveError::NoCycles {
         file: "--before".to_owned(),
@@ -176,17 +177,30 @@ fn check_levels(sides: &[Measured; 2]) -> Result<(), ProveError> {
     Ok(())
 }
 
-/// Fills in what the cycles rest; the levels of both sides.
-fn rest(sides: &mut [Measured; 2]) -> [Option<Level>; 2] {
+/// Fills in what the cycles of the sides rest; the mean power while the robot waits, W.
+fn rest(sides: &mut [Measured], measure: Measure) -> Option<f64> {
     let with_events = sides.iter().all(|side| side.has_events);
-    let levels = match [sides[0].level, sides[1].level] {
-        [Some(before), Some(after)] => Level::common([before, after]).map(Some),
-        _ => [None, None],
-    };
-    for (side, level) in sides.iter_mut().zip(levels) {
-        side.rest(level, with_events);
+    let first = sides.first().and_then(|side| side.level);
+    let levels = first.zip(sides.last().and_then(|side| side.level));
+    let levels = levels.map(|(before, after)| Level::common([before, after]));
+    for (index, side) in sides.iter_mut().enumerate() {
+        side.rest(levels.map(|levels| levels[index]), with_events);
     }
-    levels
+    let is_cabinet = measure == Measure::Cabinet;
+    let waiting = match sides {
+        [before, others @ ..] if with_events && is_cabinet => {
+            Waiting::of(before.cycles(), others.iter().flat_map(Measured::cycles))
+        }
+        _ => None,
+    };
+    for side in sides.iter_mut() {
+        match &waiting {
+            Some(waiting) => side.wait(waiting),
+            None => side.units.iter_mut().for_each(|unit| unit.waiting_s = unit.rest_s),
+        }
+    }
+    let mean = |[before, after]: [Level; 2]| 0.5 * (before.power_w + after.power_w);
+    waiting.map(|of| of.mean_w).or(levels.map(mean))
 }
 
 fn filtered(sides: [Vec<(usize, Unit)>; 2], keep: &[Vec<bool>; 2]) -> [Vec<(usize, Unit)>; 2] {
@@ -248,8 +262,8 @@ fn doubts(
     apart: f64,
     turned: Turned,
 ) -> Vec<Doubt> {
-    let floor = [0, 1].map(|side: usize| {
-        units[side].iter().filter_map(|(_, unit)| unit.floor_w).collect::<Vec<f64>>()
+    let level = [0, 1].map(|side: usize| {
+        units[side].iter().filter_map(|(_, unit)| unit.level_w).collect::<Vec<f64>>()
     });
     let times =
         [0, 1].map(|side: usize| units[side].iter().map(|(_, unit)| unit.t).collect::<Vec<f64>>());
@@ -257,7 +271,7 @@ fn doubts(
         units[side].iter().map(|(_, unit)| unit.course.as_slice()).collect::<Vec<_>>()
     });
     let found = [
-        meter([&floor[0], &floor[1]], of.saving),
+        meter([&level[0], &level[1]], of.saving),
         drift(of, [&times[0], &times[1]], apart),
         step(&of.residual[0], 0, of.saving),
         step(&of.residual[1], 1, of.saving),

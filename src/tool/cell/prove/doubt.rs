@@ -55,13 +55,13 @@ fn mean_and_error(x: &[f64]) -> [f64; 2] {
     [mean, (long_run_variance(&left, block_length(&left)) / n).sqrt()]
 }
 
-/// The lowest power that lasts in the cycles of both sides, W: a meter with another gain shows another one. The
-/// movements of a retrofit do not change it.
-pub(super) fn meter(floor: [&[f64]; 2], saving: f64) -> Option<Doubt> {
-    if floor.iter().any(|x| x.len() < 3) {
+/// The power of the cycles of both sides while the robot stands, W: a meter with another gain shows another
+/// one. The movements of a retrofit do not change it.
+pub(super) fn meter(level: [&[f64]; 2], saving: f64) -> Option<Doubt> {
+    if level.iter().any(|x| x.len() < 3) {
         return None;
     }
-    let [[before, error_0], [after, error_1]] = floor.map(mean_and_error);
+    let [[before, error_0], [after, error_1]] = level.map(mean_and_error);
     let change = after / before - 1.0;
     let error = error_0.hypot(error_1) / before;
     if change.abs() < LEAST || change.abs() < METER * error {
@@ -75,7 +75,7 @@ pub(super) fn meter(floor: [&[f64]; 2], saving: f64) -> Option<Doubt> {
         widens: [(-shift).max(0.0), shift.max(0.0)],
         withholds: false,
         text: format!(
-            "the lowest power that lasts is {before:.1} W before and {after:.1} W after ({:+.2} %, standard error \
+            "while the robot stands, the power is {before:.1} W before and {after:.1} W after ({:+.2} %, standard error \
              {:.2} %): the meter may have changed by as much, and the interval covers that; if the retrofit \
              itself lowers the power at rest, show it by a measurement with brakes and pose as before",
             100.0 * change,

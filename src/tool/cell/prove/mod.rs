@@ -24,6 +24,7 @@ mod summary;
 mod tests;
 mod unit;
 mod units;
+mod waiting;
 
 pub use campaign::{plan, prove};
 pub use doubt::Doubt;

@@ -1,7 +1,6 @@
 //! Cycles as numbers of the estimate, with what waiting costs before the scatter is seen.
 
 use super::estimate::{Point, Prior};
-use super::rest::Level;
 use super::series::Measure;
 use super::unit::Unit;
 
@@ -18,6 +17,7 @@ pub(super) fn points(sides: &[Vec<(usize, Unit)>; 2]) -> ([Vec<Point>; 2], Optio
         energy: unit.energy_j,
         duration: unit.duration_s,
         motion: unit.duration_s - unit.rest_s,
+        waiting: unit.waiting_s,
         temperature: unit.temperature.filter(|_| has).unwrap_or(0.0),
     };
     let note = (some && !has).then(|| {
@@ -26,21 +26,16 @@ pub(super) fn points(sides: &[Vec<(usize, Unit)>; 2]) -> ([Vec<Point>; 2], Optio
     ([0, 1].map(|side| sides[side].iter().map(point).collect()), note)
 }
 
-/// What is known of the cost of waiting: the power at rest, or anything up to the mean power.
-pub(super) fn prior(
-    measure: Measure,
-    levels: [Option<Level>; 2],
-    points: &[Vec<Point>; 2],
-) -> Prior {
+/// What is known of the cost of waiting: the power while the robot waits, or anything up to the mean power.
+pub(super) fn prior(measure: Measure, standing_w: Option<f64>, points: &[Vec<Point>; 2]) -> Prior {
     if measure == Measure::Joints {
         return Prior { mean: 0.0, sd: 0.0 };
     }
-    let all = || points.iter().flatten();
-    let [energy, time] = all().fold([0.0; 2], |[e, t], p| [e + p.energy, t + p.duration]);
-    if let [Some(before), Some(after)] = levels {
-        let mean = 0.5 * (before.power_w + after.power_w);
+    if let Some(mean) = standing_w {
         return Prior { mean, sd: STANDING * mean };
     }
+    let all = points.iter().flatten();
+    let [energy, time] = all.fold([0.0; 2], |[e, t], p| [e + p.energy, t + p.duration]);
     let half = 0.5 * energy / time.max(f64::MIN_POSITIVE);
     Prior { mean: half, sd: half }
 }

@@ -30,25 +30,32 @@ pub(super) enum Source {
 /// Returns to a number before which a file is of two robots.
 const RETURNS: usize = 3;
 
-/// The cycles of a log, by its column `cycle`, by the log of events, or by the power alone.
+/// The cycles of a log, by its column `cycle`, by the log of events, or by the power alone. Of the given
+/// sessions of the recorder, those are used that the log covers.
 pub(super) fn spans(
     of: &PowerLog,
     series: &Series,
-    events: Option<(&EventLog, usize)>,
+    sessions: &[(&EventLog, usize)],
 ) -> Result<(Source, Vec<Span>), ProveError> {
-    let recorded: Vec<Cycle> = events.map_or_else(Vec::new, |(events, session)| {
-        cycles(&events.recording).into_iter().filter(|cycle| cycle.session == session).collect()
-    });
+    let recorded: Vec<Vec<Cycle>> = sessions
+        .iter()
+        .map(|(events, session)| {
+            let all = cycles(&events.recording).into_iter();
+            all.filter(|cycle| cycle.session == *session).collect()
+        })
+        .collect();
     if let Some(numbers) = of.log.column(Channel::Cycle) {
         let mut spans = by_number(of, series, numbers)?;
-        for span in &mut spans {
-            let same = |cycle: &&Cycle| span.number == Some(cycle.number as f64);
-            span.recorded = recorded.iter().find(same).cloned();
-        }
+        pair(&mut spans, &recorded);
         return Ok((Source::Column, spans));
     }
     let [first, last] = series.range();
-    if !recorded.is_empty() {
+    let common = |cycles: &&Vec<Cycle>| {
+        let ends = cycles.first().zip(cycles.last());
+        ends.map_or(0.0, |(a, b)| (b.end.min(last) - a.start.max(first)).max(0.0))
+    };
+    let covered = recorded.iter().max_by(|a, b| common(a).total_cmp(&common(b)));
+    if let Some(recorded) = covered.filter(|cycles| !cycles.is_empty()).cloned() {
         let inside = recorded.into_iter().filter(|cycle| cycle.start >= first && cycle.end <= last);
         let span = |cycle: Cycle| Span {
             begin: cycle.start,
@@ -72,6 +79,35 @@ pub(super) fn spans(
         recorded: None,
     };
     Ok((Source::Power, starts.windows(2).map(span).collect()))
+}
+
+/// Finds the recorded cycles of the spans by their numbers. A recorder begins again at 1 after a restart, and the
+/// log may begin with any session: the one counts with which most cycles are found, then the one whose
+/// durations fit best.
+fn pair(spans: &mut [Span], recorded: &[Vec<Cycle>]) {
+    let mut best: (usize, f64, Vec<Option<&Cycle>>) = (0, 0.0, Vec::new());
+    for first in 0..recorded.len() {
+        let (mut session, mut last) = (first, None);
+        let (mut count, mut difference) = (0, 0.0);
+        let mut found = Vec::new();
+        for span in spans.iter() {
+            session += usize::from(span.number <= last);
+            last = span.number;
+            let same = |cycle: &&Cycle| span.number == Some(cycle.number as f64);
+            let cycle = recorded.get(session).and_then(|cycles| cycles.iter().find(same));
+            if let Some(cycle) = cycle {
+                count += 1;
+                difference += (cycle.end - cycle.start - (span.end - span.begin)).abs();
+            }
+            found.push(cycle);
+        }
+        if count > best.0 || count == best.0 && difference < best.1 {
+            best = (count, difference, found);
+        }
+    }
+    for (span, cycle) in spans.iter_mut().zip(best.2) {
+        span.recorded = cycle.cloned();
+    }
 }
 
 /// Runs of rows with the same number.

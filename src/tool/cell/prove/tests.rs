@@ -34,6 +34,7 @@ fn side(
             energy: work + STANDING * rest - 12.0 * (temperature - 30.0),
             duration: 8.0 + rest,
             motion: 8.0,
+            waiting: rest,
             temperature,
         }
     };

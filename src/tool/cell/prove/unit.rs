@@ -34,6 +34,16 @@ pub(super) struct Kind {
 /// Points of the course of the power over a cycle: enough to tell ten movements apart.
 pub(super) const POINTS: usize = 64;
 
+/// A wait.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Wait {
+    /// Its place in the cycle, from 0.
+    pub(super) place: usize,
+    /// Begin and end on the clock of the log, s.
+    pub(super) from: f64,
+    pub(super) to: f64,
+}
+
 /// A complete cycle.
 #[derive(Clone, Debug)]
 pub(super) struct Unit {
@@ -47,10 +57,14 @@ pub(super) struct Unit {
     pub(super) duration_s: f64,
     /// Time that the robot waits, s.
     pub(super) rest_s: f64,
+    /// Its waits, if the log of events has them.
+    pub(super) waits: Vec<Wait>,
+    /// What the program before takes in such waits, as time at its mean power of waiting, s.
+    pub(super) waiting_s: f64,
     /// Mean power while it waits, W.
     pub(super) rest_w: Option<f64>,
-    /// Lowest power that lasts, W.
-    pub(super) floor_w: Option<f64>,
+    /// Power while it waits at places and times that all cycles have, else the lowest power that lasts, W.
+    pub(super) level_w: Option<f64>,
     /// Mean temperature, °C.
     pub(super) temperature: Option<f64>,
     /// What it makes.

@@ -5,7 +5,8 @@ use super::rest::{Level, Window, windows};
 use super::series::{Measure, Series};
 use super::side::{EventLog, PowerLog, Side, gap_cause};
 use super::spans::{Source, Span, spans};
-use super::unit::{Kind, LeftOut, POINTS, Period, Unit};
+use super::unit::{Kind, LeftOut, POINTS, Period, Unit, Wait};
+use super::waiting::Waiting;
 use crate::learn::log::Channel;
 use crate::tool::cell::events::{Cycle, Visit, What};
 
@@ -63,8 +64,9 @@ pub(super) fn measured(
         if series.kilowatts {
             found.notes.push(format!("{}: the power is in kW", log.shown));
         }
-        let events = paired(&series, &sessions, index, side.logs.len());
-        let (source, spans) = spans(log, &series, events)?;
+        let own =
+            if sessions.len() == side.logs.len() { index..index + 1 } else { 0..sessions.len() };
+        let (source, spans) = spans(log, &series, &sessions[own])?;
         found.by_power |= source == Source::Power;
         if source == Source::Power {
             let text = "no column `cycle`: the cycles were found by the power alone";
@@ -145,10 +147,23 @@ impl Measured {
             let (series, windows) = &self.series[*log];
             unit.rest_w = own.within(series, windows, *begin, *end).1;
             let [first, last] = [*begin, *end].map(|at| series.t.partition_point(|t| *t < at));
-            unit.floor_w = own.floor_within(windows, first..last);
+            unit.level_w = own.floor_within(windows, first..last);
             if !with_events {
                 unit.rest_s = level.within(series, windows, *begin, *end).0;
             }
+        }
+    }
+
+    /// The cycles with their logs.
+    pub(super) fn cycles(&self) -> impl Iterator<Item = (&Unit, &Series)> {
+        self.units.iter().zip(self.places.iter().map(|(log, ..)| &self.series[*log].0))
+    }
+
+    /// Fills in what waits of these cycles would have taken before, from the log of events.
+    pub(super) fn wait(&mut self, of: &Waiting) {
+        for (unit, (log, ..)) in self.units.iter_mut().zip(&self.places) {
+            unit.waiting_s = of.energy_j(unit) / of.mean_w;
+            unit.level_w = of.level_w(unit, &self.series[*log].0);
         }
     }
 }
@@ -165,26 +180,6 @@ impl Clock {
         self.end = Some(last + offset);
         offset
     }
-}
-
-/// The session of the recorder that belongs to a log: the one in its place, else the one that covers
-/// most of its time.
-fn paired<'a>(
-    series: &Series,
-    sessions: &[(&'a EventLog, usize)],
-    index: usize,
-    logs: usize,
-) -> Option<(&'a EventLog, usize)> {
-    if sessions.len() == logs {
-        return sessions.get(index).copied();
-    }
-    let [first, last] = series.range();
-    let common = |of: &(&EventLog, usize)| {
-        let events = &of.0.recording.sessions[of.1].events;
-        let ends = events.first().zip(events.last());
-        ends.map_or(0.0, |(a, b)| (b.t.min(last) - a.t.max(first)).max(0.0))
-    };
-    sessions.iter().copied().max_by(|a, b| common(a).total_cmp(&common(b)))
 }
 
 /// The shortest cycle that the log has not cut; without one, nothing tells whether the others are whole.
@@ -205,6 +200,14 @@ fn unit(of: &PowerLog, series: &Series, span: &Span, offset: f64) -> Unit {
         let named = of.scan.parts.iter().find(|(known, _)| *known == number);
         named.map_or_else(|| number.to_string(), |(_, name)| name.clone())
     });
+    let waits = recorded.map_or_else(Vec::new, |cycle| {
+        let clock = begin - cycle.start;
+        let wait = |(place, visit): (usize, &Visit)| {
+            let to = visit.ended? + clock;
+            Some(Wait { place, from: visit.came + clock, to })
+        };
+        cycle.visits.iter().enumerate().filter_map(wait).collect()
+    });
     let lasts = end - begin;
     let at = |point: usize| begin + lasts * point as f64 / POINTS as f64;
     Unit {
@@ -212,9 +215,11 @@ fn unit(of: &PowerLog, series: &Series, span: &Span, offset: f64) -> Unit {
         t: begin + offset,
         energy_j: series.energy(end) - series.energy(begin),
         duration_s: lasts,
-        rest_s: recorded.map_or(0.0, |cycle| cycle.visits.iter().filter_map(Visit::length).sum()),
+        rest_s: waits.iter().map(|wait| wait.to - wait.from).sum(),
+        waits,
+        waiting_s: 0.0,
         rest_w: None,
-        floor_w: None,
+        level_w: None,
         temperature: column(Channel::Temperature(0)).map(mean),
         kind: Kind {
             part,
