@@ -47,9 +47,10 @@ impl<'m> Cursor<'m> {
                 TokenKind::String => byte < range.end,
                 _ => false,
             };
-        let (start, before) = match touches && (is_word || in_text) {
-            true => (range.start, at),
-            false => (byte, if touches { at + 1 } else { at }),
+        let (start, before) = if touches && (is_word || in_text) {
+            (range.start, at)
+        } else {
+            (byte, if touches { at + 1 } else { at })
         };
         let (words, place) = statement(tokens, before);
         Cursor { module, byte, start, words, place, in_text }
@@ -117,9 +118,9 @@ fn statement(tokens: &Tokens, before: usize) -> (Vec<usize>, Place) {
     }
     let place = place(tokens, before);
     match header(tokens, &words) {
-        None => (words, place),
-        Some(None) => (words, Place::Header),
-        Some(Some(rest)) => (rest, place),
+        Header::None => (words, place),
+        Header::Unfinished => (words, Place::Header),
+        Header::Before(rest) => (rest, place),
     }
 }
 
@@ -183,21 +184,28 @@ fn place(tokens: &Tokens, before: usize) -> Place {
     Place::Outside
 }
 
-/// `None` if the words begin no header; else what follows it, or `None` inside it.
-fn header(tokens: &Tokens, words: &[usize]) -> Option<Option<Vec<usize>>> {
+/// The first line of a declaration at the start of some words.
+enum Header {
+    None,
+    Unfinished,
+    /// These words are behind it.
+    Before(Vec<usize>),
+}
+
+fn header(tokens: &Tokens, words: &[usize]) -> Header {
     let scope = |word: &&usize| matches!(tokens.kind(**word), TokenKind::Local | TokenKind::Task);
-    let first = words.iter().take_while(scope).count();
-    let rest = words.get(first..)?;
+    let rest = &words[words.iter().take_while(scope).count()..];
     let named = || rest.get(2..).map(<[usize]>::to_vec);
-    match tokens.kind(*rest.first()?) {
-        TokenKind::Proc | TokenKind::Func => Some(behind_group(tokens, rest)),
-        TokenKind::Trap | TokenKind::Record => Some(named()),
-        TokenKind::Module => Some(match rest.get(2).map(|word| tokens.kind(*word)) {
+    let behind = match rest.first().map(|word| tokens.kind(*word)) {
+        Some(TokenKind::Proc | TokenKind::Func) => behind_group(tokens, rest),
+        Some(TokenKind::Trap | TokenKind::Record) => named(),
+        Some(TokenKind::Module) => match rest.get(2).map(|word| tokens.kind(*word)) {
             Some(TokenKind::LeftParen) => behind_group(tokens, rest),
             _ => named(),
-        }),
-        _ => None,
-    }
+        },
+        _ => return Header::None,
+    };
+    behind.map_or(Header::Unfinished, Header::Before)
 }
 
 /// The words behind the first group in parentheses.

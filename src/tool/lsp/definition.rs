@@ -48,9 +48,9 @@ pub(super) fn highlights(view: View<'_>, byte: u32) -> Vec<DocumentHighlight> {
         None => alike(view, byte),
     };
     let parse = view.project.module(file).parse();
-    let kind = |start: u32| match is_written(&parse.tree, start) {
-        true => DocumentHighlightKind::Write,
-        false => DocumentHighlightKind::Read,
+    let kind = |start: u32| {
+        let written = is_written(&parse.tree, start);
+        if written { DocumentHighlightKind::Write } else { DocumentHighlightKind::Read }
     };
     let highlight = |span: Span| DocumentHighlight {
         range: view.positions().range(span),

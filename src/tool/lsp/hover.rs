@@ -13,7 +13,7 @@ use crate::rapid::text::Span;
 /// Time and energy of the movement or wait at a byte, summed over its executions in a cycle, then the
 /// declaration of the identifier with its comment.
 pub(super) fn hover(view: View<'_>, byte: u32, costs: Option<&Costs>) -> Option<Hover> {
-    let mut parts: Vec<String> = costs.map(|costs| costs.to_string()).into_iter().collect();
+    let mut parts: Vec<String> = costs.map(ToString::to_string).into_iter().collect();
     for (names, one) in meanings(view, byte) {
         parts.extend(described(view, names, one));
     }

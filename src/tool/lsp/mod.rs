@@ -130,6 +130,8 @@ pub fn serve_on(
             Message::Response(_) => {}
         }
     }
+    // The thread that writes ends with the connection.
+    drop(connection);
     Ok(())
 }
 
@@ -144,11 +146,9 @@ fn send(connection: &Connection, messages: Vec<Message>) -> Result<(), LspError>
 fn folders(params: &Value) -> Vec<PathBuf> {
     let uri = |folder: &Value| folder.get("uri").and_then(Value::as_str).map(uri::path_of);
     let folders = params.get("workspaceFolders").and_then(Value::as_array);
-    match folders {
-        Some(folders) => folders.iter().filter_map(uri).collect(),
-        None => {
-            let root = params.get("rootUri").and_then(Value::as_str);
-            root.map(uri::path_of).into_iter().collect()
-        }
+    if let Some(folders) = folders {
+        return folders.iter().filter_map(uri).collect();
     }
+    let root = params.get("rootUri").and_then(Value::as_str);
+    root.map(uri::path_of).into_iter().collect()
 }

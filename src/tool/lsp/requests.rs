@@ -8,7 +8,7 @@ use serde_json::{Value, from_value, json};
 
 use super::actions::code_actions;
 use super::calls;
-use super::completion::{self, Form};
+use super::completion;
 use super::costs::costs_at;
 use super::definition::{self, Declarations};
 use super::folding::folding_ranges;
@@ -109,7 +109,7 @@ fn result<H: Host>(server: &mut Server<H>, method: &str, params: Value) -> Resul
             at(server, params, |view, byte| json!(signature_help(view, byte)))
         }
         LspRequestMethod::TextDocumentCompletion => {
-            let form = if server.client.snippets { Form::Snippet } else { Form::Plain };
+            let form = server.client.form;
             at(server, params, |view, byte| json!(completion::completion(view, byte, form)))
         }
         LspRequestMethod::TextDocumentPrepareCallHierarchy => {
@@ -125,9 +125,8 @@ fn result<H: Host>(server: &mut Server<H>, method: &str, params: Value) -> Resul
         LspRequestMethod::TextDocumentRename => rename(server, params),
         LspRequestMethod::TextDocumentDocumentSymbol => {
             let nested = server.client.nested_symbols;
-            document(server, params, |view| match nested {
-                true => json!(symbols::nested(view)),
-                false => json!(symbols::flat(view)),
+            document(server, params, |view| {
+                if nested { json!(symbols::nested(view)) } else { json!(symbols::flat(view)) }
             })
         }
         LspRequestMethod::WorkspaceSymbol => {

@@ -53,7 +53,7 @@ pub(super) fn semantic_tokens(view: View<'_>) -> SemanticTokens {
         let Some((kind, modifiers)) = (match tokens.kind(index) {
             TokenKind::Comment => Some(("comment", 0)),
             TokenKind::Number => Some(("number", 0)),
-            TokenKind::Identifier => own.and_then(|one| identifier(names?, one)),
+            TokenKind::Identifier => own.zip(names).map(|(one, names)| identifier(names, one)),
             TokenKind::String | TokenKind::UnclosedString => Some(("string", 0)),
             kind if kind.is_keyword() => Some(("keyword", 0)),
             _ => None,
@@ -78,7 +78,7 @@ pub(super) fn semantic_tokens(view: View<'_>) -> SemanticTokens {
     SemanticTokens { result_id: None, data }
 }
 
-fn identifier(names: &Names, one: &Use) -> Option<(&'static str, u32)> {
+fn identifier(names: &Names, one: &Use) -> (&'static str, u32) {
     let by_role = match one.role {
         Role::Procedure | Role::Function => "function",
         Role::Trap => "event",
@@ -98,11 +98,11 @@ fn identifier(names: &Names, one: &Use) -> Option<(&'static str, u32)> {
             if names.is_predefined(id) {
                 modifiers |= BUILT_IN;
             }
-            Some((kind, modifiers))
+            (kind, modifiers)
         }
-        Meaning::Predefined(_) => Some((by_role, READ_ONLY | BUILT_IN)),
-        Meaning::Known => Some((by_role, BUILT_IN)),
-        Meaning::Late | Meaning::Open | Meaning::Unknown => Some((by_role, 0)),
+        Meaning::Predefined(_) => (by_role, READ_ONLY | BUILT_IN),
+        Meaning::Known => (by_role, BUILT_IN),
+        Meaning::Late | Meaning::Open | Meaning::Unknown => (by_role, 0),
     }
 }
 
@@ -112,12 +112,11 @@ fn declared(declaration: &Declaration) -> (&'static str, u32) {
         Kind::Record => ("struct", 0),
         Kind::Component => ("property", 0),
         Kind::Alias | Kind::Basic(_) => ("type", 0),
-        Kind::Data(Storage::Const) => ("variable", READ_ONLY),
+        Kind::Data(Storage::Const) | Kind::Counter => ("variable", READ_ONLY),
         Kind::Data(Storage::Pers | Storage::Var) => ("variable", 0),
         Kind::Routine(RoutineKind::Trap) => ("event", 0),
         Kind::Routine(RoutineKind::Func | RoutineKind::Proc) => ("function", 0),
         Kind::Parameter(_) => ("parameter", 0),
-        Kind::Counter => ("variable", READ_ONLY),
         Kind::Label => ("label", 0),
     }
 }

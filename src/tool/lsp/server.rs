@@ -11,7 +11,7 @@ use gen_lsp_types::{
 use lsp_server::{Message, Notification, Request};
 use serde_json::{Value, from_value, json};
 
-use super::client::Client;
+use super::client::{Client, Delivery};
 use super::diagnostics::of_document;
 use super::findings::Findings;
 use super::host::Host;
@@ -139,7 +139,7 @@ impl<H: Host> Server<H> {
         self.unpublished.remove(uri);
         self.changed(uri);
         self.outdated = true;
-        if self.client.pulls_diagnostics {
+        if self.client.delivery != Delivery::Sent {
             return Vec::new();
         }
         vec![publication(uri.to_owned(), Vec::new())]
@@ -171,9 +171,9 @@ impl<H: Host> Server<H> {
     /// The diagnostics that have changed; for a client that asks for them, that they have.
     pub(super) fn publish(&mut self) -> Vec<Message> {
         let waiting = std::mem::take(&mut self.unpublished);
-        if self.client.pulls_diagnostics {
-            let outdated = std::mem::take(&mut self.outdated);
-            if !outdated || !self.client.refreshes_diagnostics || waiting.is_empty() {
+        if self.client.delivery != Delivery::Sent {
+            let outdated = std::mem::take(&mut self.outdated) && !waiting.is_empty();
+            if !outdated || self.client.delivery == Delivery::Asked {
                 return Vec::new();
             }
             return vec![self.ask(&LspRequestMethod::WorkspaceDiagnosticRefresh, Value::Null)];

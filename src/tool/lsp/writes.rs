@@ -8,7 +8,7 @@ pub(super) fn is_written(tree: &Tree, start: u32) -> bool {
     loop {
         let inside = |child: &Node<'_>| child.range().contains(&start);
         let Some(child) = node.children().find(inside) else { return false };
-        let target = node.children().next().map(|first| first.range());
+        let target = node.children().next().map(Node::range);
         let declares = matches!(
             node.kind(),
             NodeKind::DataDeclaration | NodeKind::Parameter | NodeKind::ForStatement

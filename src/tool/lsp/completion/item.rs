@@ -20,11 +20,12 @@ pub(super) struct Entry {
 }
 
 /// Whether the client can fill in the places of a snippet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::tool::lsp) enum Form {
     /// It can.
     Snippet,
     /// It inserts text.
+    #[default]
     Plain,
 }
 
