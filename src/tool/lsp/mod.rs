@@ -238,7 +238,7 @@ fn publish(uri: String, diagnostics: Vec<Diagnostic>) -> Message {
 fn diagnostic(finding: &Finding, file: &SourceFile) -> Diagnostic {
     Diagnostic {
         range: range_of(file, finding.span),
-        severity: Some(match finding.rule.severity {
+        severity: Some(match finding.severity {
             Severity::Error => DiagnosticSeverity::Error,
             Severity::Warning => DiagnosticSeverity::Warning,
             Severity::Info => DiagnosticSeverity::Information,

@@ -32,7 +32,7 @@
 //!
 //! ## Assumptions
 //! The process does not need a robot that stands. Points at which the tool turns back are taken
-//! for gripping and left alone.
+//! for gripping and left alone, and so are movements of a process. The confidence is low.
 
 use super::super::context::Context;
 use super::super::edits::zone_within;
@@ -68,13 +68,13 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         );
         let finding = propose_zone(context, &RULE, index, zone, message);
         let assumption = "the process takes the signal while the robot moves";
-        findings.extend(finding.map(|finding| finding.with_assumption(assumption)));
+        findings.extend(finding.map(|finding| finding.with_assumption(assumption).doubtful()));
     }
 }
 
 fn stops_for_output(context: &Context<'_>, index: usize) -> bool {
     let site = &context.sites[index];
-    if !site.is_stop() || !is_ordinary(context, site) {
+    if !site.is_stop() || !is_ordinary(context, site) || context.is_process(index) {
         return false;
     }
     let next = context.next(index, Through::NoEffect);
