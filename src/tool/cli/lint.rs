@@ -416,7 +416,9 @@ fn write(args: &LintArgs, setup: &Setup, report: &Report) -> anyhow::Result<()> 
             write!(out, "{}", report::lint::text::summary(report))?;
         }
         LintFormat::Concise => write!(out, "{}", report::lint::text::concise(report, files))?,
-        LintFormat::Json => pretty(&mut out, &report::lint::json::json(report, files, &setup.year))?,
+        LintFormat::Json => {
+            pretty(&mut out, &report::lint::json::json(report, files, &setup.year))?
+        }
         LintFormat::Sarif => pretty(&mut out, &report::lint::sarif::sarif(report, files))?,
         LintFormat::Github => write!(out, "{}", report::lint::github::github(report, files))?,
         LintFormat::Gitlab => pretty(&mut out, &report::lint::gitlab::gitlab(report, files))?,

@@ -15,7 +15,7 @@ use super::system::System;
 use super::trace::{self, Recording, TraceStep, executions};
 use super::work::Work;
 use crate::arm::robot::Model;
-use crate::rapid::builtins::Effect;
+use crate::rapid::builtins::Instruction;
 use crate::rapid::ir::exec::Note;
 use crate::rapid::ir::hir::{Call, Expr, Stmt, StmtKind};
 use crate::rapid::ir::movement::{Movement, Settings, Target};
@@ -360,7 +360,7 @@ fn moves_after(flow: &Flow<'_>, by_place: &BTreeMap<Place, usize>, place: Place)
 
 /// Whether an operator may move the robot by hand at a statement: the program stops or asks.
 fn lets_jog(stmt: &Stmt) -> bool {
-    called_instruction(stmt).is_some_and(|it| it.effect == Effect::Stop || it.asks_operator())
+    called_instruction(stmt).is_some_and(Instruction::asks_operator)
 }
 
 fn unknown_starts(

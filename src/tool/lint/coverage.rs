@@ -23,10 +23,14 @@ pub struct Coverage {
 impl Coverage {
     /// The simulated movements of a program.
     pub(super) fn new(context: &Context<'_>) -> Coverage {
-        let left: BTreeSet<Span> = context.trace.iter().filter_map(|done| match done.what {
-            Action::Left(span) => Some(span),
-            _ => None,
-        }).collect();
+        let left: BTreeSet<Span> = context
+            .trace
+            .iter()
+            .filter_map(|done| match done.what {
+                Action::Left(span) => Some(span),
+                _ => None,
+            })
+            .collect();
         let mut found = Coverage::default();
         let mut uncalled: BTreeMap<&str, usize> = BTreeMap::new();
         for site in context.sites.iter().filter(|site| site.reachable) {

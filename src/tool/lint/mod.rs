@@ -20,6 +20,7 @@ mod offer;
 mod outputs;
 mod parsed;
 pub mod process;
+mod purpose;
 pub mod ranking;
 mod regions;
 mod register;

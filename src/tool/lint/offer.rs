@@ -35,28 +35,33 @@ pub(super) fn offer_fixes(
     });
     let Some(before) = cycle else { return };
     while !open.is_empty() {
-        // Fixes of different places are tried together: most of them hold.
         let together = disjoint(&open, findings);
-        let fixes = |of: &[usize]| -> Vec<Edit> {
+        open.retain(|index| !together.contains(index));
+        let holds = |of: &[usize]| {
             let fixes = of.iter().filter_map(|index| findings[*index].fix.as_ref());
-            fixes.flat_map(|fix| fix.edits.iter().cloned()).collect()
+            let edits: Vec<Edit> = fixes.flat_map(|fix| fix.edits.iter().cloned()).collect();
+            keeps_work(job, group, read, before, &edits)
         };
-        let holds = |of: &[usize]| keeps_work(job, group, read, before, &fixes(of));
-        let lost: Vec<usize> = if holds(&together) {
-            Vec::new()
-        } else if together.len() == 1 {
-            together.clone()
-        } else {
-            together.iter().copied().filter(|index| !holds(&[*index])).collect()
-        };
-        for index in lost {
+        for index in failing(&together, &holds) {
             findings[index].fix = None;
         }
-        open.retain(|index| !together.contains(index));
     }
 }
 
-/// The largest leading choice of findings whose fixes change no text of each other.
+/// Those of some fixes that do not hold. Most do, so that they are tried together, and by halves where
+/// that fails.
+fn failing(of: &[usize], holds: &impl Fn(&[usize]) -> bool) -> Vec<usize> {
+    if holds(of) {
+        return Vec::new();
+    }
+    if of.len() == 1 {
+        return of.to_vec();
+    }
+    let (left, right) = of.split_at(of.len() / 2);
+    [failing(left, holds), failing(right, holds)].concat()
+}
+
+/// The first findings whose fixes change no text of each other.
 fn disjoint(open: &[usize], findings: &[Finding]) -> Vec<usize> {
     let mut taken = Places::default();
     open.iter().copied().filter(|index| taken.take(&findings[*index])).collect()
@@ -93,7 +98,8 @@ fn keeps_work(
     let mut read = read.to_vec();
     for index in &group.files {
         let file = &job.files[*index];
-        let own: Vec<Edit> = edits.iter().filter(|edit| edit.span.file == file.id).cloned().collect();
+        let own: Vec<Edit> =
+            edits.iter().filter(|edit| edit.span.file == file.id).cloned().collect();
         if own.is_empty() {
             continue;
         }

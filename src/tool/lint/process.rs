@@ -53,14 +53,19 @@ pub fn same_order(before: &Simulation, after: &Simulation) -> bool {
 /// What a simulation does, in order.
 fn ordered(events: &[Event]) -> Vec<Done> {
     let done = trace::of_events(events);
-    let mut all: Vec<Done> = done.iter().filter_map(|it| Some(match &it.what {
-        // The configuration is the robot's way, not the place of the tool.
-        Action::Move(movement) => Done::Moved(match &movement.target {
-            Target::Joints(joints) => format!("{joints:?}"),
-            Target::Pose(target) => format!("{:?} {:?}", target.pose, movement.wobj),
-        }),
-        what => Done::Acted(action(what)?),
-    })).collect();
+    let mut all: Vec<Done> = done
+        .iter()
+        .filter_map(|it| {
+            Some(match &it.what {
+                // The configuration is the robot's way, not the place of the tool.
+                Action::Move(movement) => Done::Moved(match &movement.target {
+                    Target::Joints(joints) => format!("{joints:?}"),
+                    Target::Pose(target) => format!("{:?} {:?}", target.pose, movement.wobj),
+                }),
+                what => Done::Acted(action(what)?),
+            })
+        })
+        .collect();
     all.dedup_by(|a, b| a == b && matches!(a, Done::Moved(_)));
     all
 }

@@ -30,9 +30,7 @@ pub fn top(findings: &[Finding], count: usize) -> Vec<&Finding> {
     let mut ranked: Vec<&Finding> =
         findings.iter().filter(|finding| joules(finding).is_some()).collect();
     let order = |finding: &Finding| joules(finding).unwrap_or_default();
-    ranked.sort_by(|a, b| {
-        b.confidence.cmp(&a.confidence).then(order(b).total_cmp(&order(a)))
-    });
+    ranked.sort_by(|a, b| b.confidence.cmp(&a.confidence).then(order(b).total_cmp(&order(a))));
     let mut places = BTreeSet::new();
     ranked.retain(|finding| places.insert(finding.span));
     ranked.truncate(count);

@@ -70,7 +70,7 @@ pub(super) fn lowered<'c>(
         let brackets = !reach.runs_out
             && reach.ends.iter().all(|end| end == place || raises(end))
             && reach.ends.iter().any(raises);
-        let others = || in_force.iter().enumerate().filter(|(other, _)| *other != index);
+        let others = || in_force.iter().enumerate().filter(move |(other, _)| *other != index);
         let own = context.sites.iter().enumerate().filter(|(site, it)| {
             !it.executions.is_empty()
                 && reach.movements.contains(&it.place)

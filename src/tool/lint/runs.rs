@@ -18,7 +18,7 @@ pub(super) fn cycle(job: &Job<'_>, program: &Program, entry: Option<RoutineId>) 
     let model = job.model?;
     let run = |entry| simulate(program, entry, model, &job.options);
     let mut simulation = entry.map(run);
-    let mut tried = BTreeSet::new();
+    let mut tried: BTreeSet<RoutineId> = entry.into_iter().collect();
     loop {
         let steps = simulation.iter().flat_map(|it| trace::of_events(&it.events));
         let entries = further_entries(program, entry, &movements(steps), &tried);
@@ -41,7 +41,7 @@ pub(super) fn cycle(job: &Job<'_>, program: &Program, entry: Option<RoutineId>) 
 /// The actions of a program without a robot.
 pub(super) fn recording(program: &Program, entry: Option<RoutineId>) -> Recording {
     let mut all = entry.map(|entry| record(program, entry)).unwrap_or_default();
-    let mut tried = BTreeSet::new();
+    let mut tried: BTreeSet<RoutineId> = entry.into_iter().collect();
     loop {
         let executed = movements(all.trace());
         let entries = further_entries(program, entry, &executed, &tried);

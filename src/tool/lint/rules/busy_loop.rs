@@ -47,7 +47,9 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             for (index, stmt) in block.iter().enumerate() {
                 let before = index.checked_sub(1).map(|before| &block[before]);
                 let Some((condition, body)) = polling_loop(stmt, before) else { continue };
-                let asks = asks_outside(condition) || reads_flag(context, routine, condition);
+                let names = &context.flow.data_names;
+                let input = asks_outside(condition) && !names.has_only_data(routine, condition);
+                let asks = input || reads_flag(context, routine, condition);
                 if asks && takes_no_time(context, routine, body) {
                     let message = "a loop asks without a pause: WaitDI or WaitUntil wait for it";
                     findings.push(Finding::new(&RULE, stmt.span, message));

@@ -35,8 +35,11 @@ use std::collections::BTreeMap;
 
 use super::super::context::Context;
 use super::super::rule::Finding;
+use super::super::saving::Saving;
 use super::super::trace::Action;
+use crate::arm::robot::Model;
 use crate::rapid::text::Span;
+use crate::retime::energy::EnergyParts;
 use crate::retime::motion::timeline::WaitBasis;
 
 rule!("EW305", "fixed-wait", Dwell, Text, Info, "fixed_wait.rs");
@@ -74,7 +77,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             cost.unwrap_or_default()
         );
         let finding = Finding::new(&RULE, span, message)
-            .with_saving("WaitDI in place of WaitTime", None)
+            .with_saving("WaitDI in place of WaitTime", None::<Saving>)
             .with_at_stake(joules)
             .with_assumption(format!("the wait is for {signal}"));
         findings.push(finding);
@@ -113,10 +116,10 @@ fn output(context: &Context<'_>, step: usize) -> Option<String> {
 
 /// What the waits take, J.
 fn energy(context: &Context<'_>, steps: &[usize]) -> Option<f64> {
-    let cycle = context.cycle.filter(|_| context.model.is_some_and(|it| it.has_dynamics()))?;
+    let cycle = context.cycle.filter(|_| context.model.is_some_and(Model::has_dynamics))?;
     let of = |step: &usize| {
         let (event, _) = context.trace[*step].event?;
-        Some(cycle.account.events.get(event)?.iter().map(|part| part.energy_j()).sum::<f64>())
+        Some(cycle.account.events.get(event)?.iter().map(EnergyParts::energy_j).sum::<f64>())
     };
     steps.iter().map(of).sum()
 }

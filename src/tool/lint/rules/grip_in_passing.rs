@@ -36,7 +36,7 @@
 //! Outputs that are set in passing, with a way that goes on, are none of this.
 
 use super::super::context::Context;
-use super::super::flow::{Next, Through};
+use super::super::flow::{Next, Place, Through};
 use super::super::rule::Finding;
 
 rule!("EW105", "grip-in-passing", Stops, Text, Warning, "grip_in_passing.rs");
@@ -58,7 +58,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         let Some(outputs) = outputs.collect::<Option<Vec<_>>>().filter(|it| !it.is_empty()) else {
             continue;
         };
-        let waits = |place: &_| {
+        let waits = |place: &Place| {
             let behind = context.flow.following(*place, Through::Outputs);
             !behind.is_empty() && behind.iter().all(|next| matches!(next, Next::Wait(_)))
         };

@@ -56,8 +56,9 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         });
         let arguments: Vec<_> = arguments.collect();
         let [acceleration, ramp] = *arguments.as_slice() else { continue };
-        let full = |step: &_| with_acceleration(step, 1.0, Some(1.0));
-        let Ok(Some(saving)) = context.evaluate(&region.spans(context), &full) else { continue };
+        let spans = region.spans(context);
+        let full = context.evaluate(&spans, &|step| with_acceleration(step, 1.0, Some(1.0)));
+        let Ok(Some(saving)) = full else { continue };
         let message =
             format!("accelerating with {} % takes longer and spares nothing", region.value);
         let change = format!("AccSet 100,100{}", region.lines(context));

@@ -45,12 +45,12 @@ rule!("EW603", "lowered-speed", Settings, Robot, Info, "lowered_speed.rs");
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     let of_velset = |settings: &Settings, value: f64| settings.speed_override == value / 100.0;
     for region in lowered(context, "velset", of_velset) {
-        let full = |settings| Settings { speed_override: 1.0, ..settings };
+        let full = |settings: Settings| Settings { speed_override: 1.0, ..settings };
         findings.extend(raised(context, &region, full));
     }
     let of_refresh = |settings: &Settings, value: f64| settings.refresh == value / 100.0;
     for region in lowered(context, "speedrefresh", of_refresh) {
-        let full = |settings| Settings { refresh: 1.0, ..settings };
+        let full = |settings: Settings| Settings { refresh: 1.0, ..settings };
         findings.extend(raised(context, &region, full));
     }
 }

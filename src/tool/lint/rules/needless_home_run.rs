@@ -64,9 +64,9 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     let first = moves[0];
     let is_home = |step: usize| {
         goal(context, step).is_some_and(|goal| goal.is_same(&home))
-            || joints(context, step).zip(joints(context, first)).is_some_and(|(a, b)| {
-                are_close(&a, &b, POSITION_TOLERANCE)
-            })
+            || joints(context, step)
+                .zip(joints(context, first))
+                .is_some_and(|(a, b)| are_close(&a, &b, POSITION_TOLERANCE))
     };
     // A program that begins at a pose begins at home if it ends there too.
     if home.pose().is_some() && !moves.last().is_some_and(|step| is_home(*step)) {

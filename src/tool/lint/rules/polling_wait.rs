@@ -79,7 +79,10 @@ pub(super) fn all_blocks(routine: &Routine) -> Vec<&Block> {
 }
 
 /// The condition and the statements of a loop, also of one that is made with a jump.
-pub(super) fn polling_loop<'h>(stmt: &'h Stmt, before: Option<&'h Stmt>) -> Option<(&'h Expr, &'h [Stmt])> {
+pub(super) fn polling_loop<'h>(
+    stmt: &'h Stmt,
+    before: Option<&'h Stmt>,
+) -> Option<(&'h Expr, &'h [Stmt])> {
     match &stmt.kind {
         StmtKind::While { condition, body } => Some((condition, body.as_slice())),
         StmtKind::If { branches, otherwise: None } => jump_back(branches, before),

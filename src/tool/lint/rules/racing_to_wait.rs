@@ -34,12 +34,12 @@
 use super::super::context::Context;
 use super::super::edits::{replace, slower, with_speed};
 use super::super::flow::{Next, Through};
+use super::super::purpose::PROCESS_SPEED;
 use super::super::rule::Finding;
 use super::super::saving::Saving;
 use super::super::site::Site;
 use super::super::statements::called_instruction;
 use super::super::trace::Action;
-use super::super::work::PROCESS_SPEED;
 use crate::rapid::builtins::Instruction;
 use crate::rapid::text::Span;
 use crate::retime::motion::timeline::WaitBasis;
@@ -106,7 +106,8 @@ pub(super) fn slower_run(
 ) -> Option<Finding> {
     let run = run_of(context, index)?;
     let sites: Vec<_> = run.iter().map(|site| &context.sites[*site]).collect();
-    if sites.iter().any(|site| !site.is_plain()) || run.iter().any(|it| context.is_in_process(*it)) {
+    if sites.iter().any(|site| !site.is_plain()) || run.iter().any(|it| context.is_in_process(*it))
+    {
         return None;
     }
     let spans: Vec<Span> = sites.iter().map(|site| site.stmt.span).collect();

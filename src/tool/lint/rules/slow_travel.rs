@@ -95,8 +95,7 @@ fn faster_travel(context: &Context<'_>, sites: &[usize]) -> Option<Finding> {
     let fastest = speeds.collect::<Option<Vec<f64>>>()?.into_iter().fold(0.0, f64::max);
     let mut best: Option<(String, Saving)> = None;
     for (name, speed) in faster(fastest) {
-        let difference =
-            context.difference(&spans, &|step| with_predefined_speed(step, speed))?;
+        let difference = context.difference(&spans, &|step| with_predefined_speed(step, speed))?;
         let least = best.as_ref().map_or(0.0, |(_, best)| best.energy_j) + THRESHOLD_J;
         if difference.saved.energy_j() < least {
             break;
@@ -109,7 +108,9 @@ fn faster_travel(context: &Context<'_>, sites: &[usize]) -> Option<Finding> {
     let written = context.text(sites[0].speed.span);
     let (text, count) = match sites.len() {
         1 => (format!("{} travels", sites[0].name), String::new()),
-        count => (format!("{count} movements of this procedure travel"), format!(" in all {count}")),
+        count => {
+            (format!("{count} movements of this procedure travel"), format!(" in all {count}"))
+        }
     };
     let message = format!("{text} through free air with {written}, slower than takes least energy");
     let mut finding = Finding::new(&RULE, spans[0], message)

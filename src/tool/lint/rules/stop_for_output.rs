@@ -32,11 +32,12 @@
 //!
 //! ## Assumptions
 //! The process does not need a robot that stands. Points at which the tool turns back are taken
-//! for gripping and left alone, and so are movements of a process. The confidence is low.
+//! for gripping and left alone, and so are movements below 200 mm/s. The confidence is low.
 
 use super::super::context::Context;
 use super::super::edits::zone_within;
 use super::super::flow::{Next, Through};
+use super::super::purpose::PROCESS_SPEED;
 use super::super::rule::Finding;
 use super::super::stops::{are_plain, is_ordinary, propose_zone};
 
@@ -74,7 +75,8 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
 
 fn stops_for_output(context: &Context<'_>, index: usize) -> bool {
     let site = &context.sites[index];
-    if !site.is_stop() || !is_ordinary(context, site) || context.is_process(index) {
+    let slow = site.facts.speed.is_none_or(|speed| speed.tcp < PROCESS_SPEED);
+    if !site.is_stop() || !is_ordinary(context, site) || slow {
         return false;
     }
     let next = context.next(index, Through::NoEffect);
