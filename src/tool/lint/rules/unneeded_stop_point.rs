@@ -32,9 +32,10 @@
 //!
 //! ## Assumptions
 //! Not looked at: movements next to work (an output, a wait, another tool or load), movements of a
-//! process (below 200 mm/s, or with an output on for lines alone), points at which the tool turns back, points nearer than 20 mm to the next one, corners of contours (lines of less
-//! than 150 mm across the tool's axis, next to an arc, or four and more in a row) and their ends (the
-//! tool goes in, or comes out, next to a line across its axis), interrupt routines, first movements.
+//! process (below 200 mm/s, or with an output on for lines alone), points at which the tool turns
+//! back, points nearer than 20 mm to the next one, corners of contours (lines of less than 150 mm
+//! across the tool's axis, next to an arc, or four and more in a row) and their ends (the tool goes
+//! in, or comes out, next to a line across its axis), interrupt routines, first movements.
 
 use std::collections::BTreeSet;
 
