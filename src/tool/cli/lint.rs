@@ -428,6 +428,14 @@ fn write(args: &LintArgs, setup: &Setup, report: &Report) -> anyhow::Result<()> 
     if args.statistics {
         write!(std::io::stderr().lock(), "{}", report::lint::text::statistics(report))?;
     }
+    let alone = report.coverage.without_entry;
+    if alone > 0 && setup.programs.model.is_some() {
+        let text = format!(
+            "{alone} programs lack the routine that starts them (--entry NAME): their procedures are \
+             simulated one by one"
+        );
+        note(args.cell.quiet, &text);
+    }
     let why = match &setup.programs.model {
         None => "no robot is named (--robot NAME)".to_owned(),
         Some(model) if !model.has_dynamics() => format!("{} has no dynamics", model.name),

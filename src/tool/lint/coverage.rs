@@ -16,6 +16,8 @@ pub struct Coverage {
     pub movements: usize,
     /// Those that the simulation makes as programmed.
     pub simulated: usize,
+    /// Programs without their entry: their procedures are simulated one by one.
+    pub without_entry: usize,
     /// Why the others are not simulated, with their number.
     pub missing: BTreeMap<String, usize>,
 }
@@ -31,7 +33,8 @@ impl Coverage {
                 _ => None,
             })
             .collect();
-        let mut found = Coverage::default();
+        let alone = context.entry.is_none() && !context.sites.is_empty();
+        let mut found = Coverage { without_entry: usize::from(alone), ..Coverage::default() };
         let mut uncalled: BTreeMap<&str, usize> = BTreeMap::new();
         for site in context.sites.iter().filter(|site| site.reachable) {
             found.movements += 1;
@@ -65,6 +68,7 @@ impl Coverage {
     pub(super) fn add(&mut self, other: Coverage) {
         self.movements += other.movements;
         self.simulated += other.simulated;
+        self.without_entry += other.without_entry;
         for (reason, count) in other.missing {
             *self.missing.entry(reason).or_default() += count;
         }
