@@ -78,7 +78,7 @@ pub(super) struct LintArgs {
     #[arg(long, value_name = "N", default_value_t = TOP)]
     pub(super) top: usize,
 
-    /// Hours in which the cell works in a year [default: hours_per_year of joulepath.toml, or 4000]
+    /// Hours in which the cell works in a year; otherwise those of joulepath.toml, or 4000.
     #[arg(long, value_name = "HOURS", allow_negative_numbers = true)]
     pub(super) hours: Option<f64>,
 
@@ -417,7 +417,7 @@ fn write(args: &LintArgs, setup: &Setup, report: &Report) -> anyhow::Result<()> 
         }
         LintFormat::Concise => write!(out, "{}", report::lint::text::concise(report, files))?,
         LintFormat::Json => {
-            pretty(&mut out, &report::lint::json::json(report, files, &setup.year))?
+            pretty(&mut out, &report::lint::json::json(report, files, &setup.year))?;
         }
         LintFormat::Sarif => pretty(&mut out, &report::lint::sarif::sarif(report, files))?,
         LintFormat::Github => write!(out, "{}", report::lint::github::github(report, files))?,
