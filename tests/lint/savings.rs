@@ -52,6 +52,11 @@ fn manual_change(fixture: &Fixture, finding: &Finding) -> Vec<Edit> {
         let around = |line: Span| edit(line, format!("{full}{}{statement}", file.text(line)));
         return lines.map(around).collect();
     }
+    if let Some(change) = change.strip_suffix(" in the target") {
+        let (new, _) = change.split_once(" in place of ").unwrap();
+        let (_, number) = new.split_once(' ').unwrap();
+        return vec![edit(finding.related[0].0, number.to_owned())];
+    }
     if let Some((new, rest)) = change.split_once(" in place of ") {
         let old = rest.split(',').next().unwrap();
         assert!(statement.contains(old), "{statement} has no {old}");

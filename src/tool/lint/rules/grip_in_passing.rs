@@ -2,7 +2,7 @@
 //!
 //! ## What it does
 //! Finds movements with a zone behind which, on every way, an output is set and then a wait follows,
-//! or the tool goes back the way it came: a grip, which needs a robot that stands.
+//! or a line behind which the tool goes back the way it came: a grip, which needs a robot that stands.
 //!
 //! ## Why it wastes energy
 //! The controller sets the output when the tool reaches the zone, not when it is at the point. The
@@ -63,7 +63,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             !behind.is_empty() && behind.iter().all(|next| matches!(next, Next::Wait(_)))
         };
         let goes_back = || context.corner(index).is_some_and(|corner| corner.turn > MAX_TURN);
-        if outputs.iter().all(waits) || goes_back() {
+        if outputs.iter().all(waits) || site.is_linear() && goes_back() {
             let written = site.zone.map(|zone| context.text(zone.span)).unwrap_or_default();
             let message = format!(
                 "the output behind this {} comes when the tool enters {written}, before the robot \

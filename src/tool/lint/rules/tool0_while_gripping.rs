@@ -1,7 +1,7 @@
 //! Parts are carried with tool0: the gripper has no mass.
 //!
 //! ## What it does
-//! Finds movements with `tool0` that the program runs while a payload of `GripLoad` is in force:
+//! Finds movements with `tool0` that can follow a `GripLoad` with a mass before the next `GripLoad`:
 //! something grips, so the flange is not bare.
 //!
 //! ## Why it wastes energy
@@ -31,8 +31,12 @@
 //! the tool is, but take its load: they count too. Movements without a part, as to a pose for
 //! transport, are left alone.
 
+use std::collections::BTreeSet;
+
 use super::super::context::Context;
 use super::super::rule::Finding;
+use super::super::site::parts;
+use super::super::statements::first_argument;
 
 rule!("EW504", "tool0-while-gripping", Load, Text, Warning, "tool0_while_gripping.rs");
 
@@ -40,13 +44,16 @@ rule!("EW504", "tool0-while-gripping", Load, Text, Warning, "tool0_while_grippin
 const NONE: f64 = 0.01;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
-    let carries = |step: &usize| {
-        let movement = context.trace[*step].what.movement();
-        let load = movement.and_then(|movement| movement.settings.grip_load);
-        load.is_some_and(|load| load.mass > NONE)
-    };
+    let mut carrying = BTreeSet::new();
+    for (place, _, call) in context.calls("gripload") {
+        let load = first_argument(call).and_then(|load| context.constant(place.0, load));
+        let mass = load.as_ref().and_then(|load| parts(load)?.first()?.num());
+        if mass.is_some_and(|mass| mass > NONE) {
+            carrying.extend(context.flow.in_force(place, "gripload").movements);
+        }
+    }
     let bare = context.sites.iter().filter(|site| {
-        site.tool_key() == Some("tool0") && site.reachable && site.executions.iter().any(carries)
+        site.tool_key() == Some("tool0") && site.reachable && carrying.contains(&site.place)
     });
     let bare: Vec<_> = bare.collect();
     let Some(first) = bare.first() else { return };
