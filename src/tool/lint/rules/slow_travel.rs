@@ -31,11 +31,13 @@
 //!
 //! ## Assumptions
 //! A process is slower than 200 mm/s, or has an output that is on for lines and arcs alone. Lines next
-//! to work (an output, a wait, another tool or load) and lines of less than 150 mm are ways into or
-//! out of it, or contours, and keep their speed, and so do joint movements of less than 150 mm next to
+//! to work (an output, a wait, another tool or load), lines along the tool's axis and lines of less than
+//! 150 mm are ways into or out of it, or contours, and keep their speed, and so do joint movements of less than 150 mm next to
 //! work.
 
 use std::collections::BTreeMap;
+
+use nalgebra::Vector3;
 
 use super::super::context::Context;
 use super::super::edits::{faster, replace, with_predefined_speed};
@@ -52,6 +54,8 @@ rule!("EW206", "slow-travel", Speed, Robot, Info, "slow_travel.rs");
 
 /// Shorter ways may belong to work, m: as in EW101.
 const MIN_WAY: f64 = 0.15;
+/// Largest cosine between the tool's axis and a way across it: tools may lean by 30°.
+const MAX_ACROSS: f64 = 0.5;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     let mut groups: BTreeMap<(RoutineId, String), Vec<usize>> = BTreeMap::new();
@@ -71,21 +75,29 @@ fn travels(context: &Context<'_>, index: usize) -> bool {
         let record = context.record(*step);
         record.is_some_and(|(_, it, _)| it.pace == Pace::Speed(SpeedBound::Programmed))
     };
-    let long = || site.executions.iter().all(|step| way(context, *step) >= MIN_WAY);
+    let long = || site.executions.iter().all(|step| way(context, *step).norm() >= MIN_WAY);
+    let goes_in = || site.executions.iter().any(|step| is_along_tool(context, *step));
     site.is_plain()
         && site.signature.form != MoveForm::Circular
         && site.executions.iter().any(is_limited)
         && !context.is_process(index)
-        && !(site.is_linear() && context.is_next_to_work(index))
+        && !(site.is_linear() && (context.is_next_to_work(index) || goes_in()))
         && ((!site.is_linear() && !context.is_next_to_work(index)) || long())
 }
 
-/// The way of the tool in an execution, m; 0 if it is unknown.
-fn way(context: &Context<'_>, step: usize) -> f64 {
+/// Whether a movement goes into or out of something in an execution: along the tool's axis.
+fn is_along_tool(context: &Context<'_>, step: usize) -> bool {
+    let way = way(context, step);
+    let axis = context.pose(step).map(|pose| pose.rotation * Vector3::z());
+    axis.is_none_or(|axis| axis.dot(&way).abs() > MAX_ACROSS * way.norm())
+}
+
+/// The way of the tool in an execution, m; none if it is unknown.
+fn way(context: &Context<'_>, step: usize) -> Vector3<f64> {
     let before = context.trace[..step].iter().rposition(|done| done.what.moves());
     let from = before.and_then(|before| context.pose(before));
     let ends = from.zip(context.pose(step));
-    ends.map_or(0.0, |(from, to)| (to.translation.vector - from.translation.vector).norm())
+    ends.map_or_else(Vector3::zeros, |(from, to)| to.translation.vector - from.translation.vector)
 }
 
 fn faster_travel(context: &Context<'_>, sites: &[usize]) -> Option<Finding> {
