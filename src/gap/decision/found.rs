@@ -13,9 +13,16 @@ pub(in crate::gap) struct Candidate {
     pub pieces: Vec<PieceRows>,
     /// Prior cost \[nats\].
     pub cost: f64,
-    /// Whether it is no larger than what any robot has, or other values of parameters: it takes no
-    /// place of a finding.
+    /// Whether it is no larger than what any robot has, other values of parameters, or in the baseline,
+    /// too: it takes no place of a finding.
     pub is_everyday: bool,
+}
+
+impl Candidate {
+    /// Whether the baseline has it, too.
+    pub(in crate::gap) fn in_baseline(&self) -> bool {
+        self.pieces.iter().any(|piece| piece.in_baseline)
+    }
 }
 
 /// A set of effects.
@@ -35,12 +42,18 @@ impl Found {
         self.effects.iter().filter(|of| !of.is_everyday).count()
     }
 
+    /// The effects that the baseline has, too.
+    pub(in crate::gap) fn in_baseline(&self) -> impl Iterator<Item = &Candidate> {
+        self.effects.iter().filter(|of| of.in_baseline())
+    }
+
     pub(super) fn tried(&self) -> Tried {
-        Tried { ids: self.effects.iter().map(|of| of.effect.id).collect(), score: self.score }
+        let new = self.effects.iter().filter(|of| !of.in_baseline());
+        Tried { ids: new.map(|of| of.effect.id).collect(), score: self.score }
     }
 }
 
-/// A set that was fitted: ids of its effects, and the logarithm of the odds against no effect.
+/// A set that was fitted: ids of its effects that the baseline does not have, and the logarithm of the odds against no effect.
 pub(in crate::gap) struct Tried {
     /// Ids.
     pub ids: Vec<&'static str>,

@@ -53,6 +53,8 @@ const DAYS: [Variable; 4] =
 pub(super) struct Local {
     pub(super) group: Group,
     pub(super) series: Vec<Vec<f64>>,
+    /// Of the mean friction of a log, the number of its record.
+    pub(super) friction_of: Option<usize>,
 }
 
 /// All everyday errors of a joint.
@@ -71,7 +73,7 @@ pub(super) fn everyday(records: &[Record<'_>], joint: usize, tunables: &Tunables
         let series = series.into_iter().zip(&is_mean).map(|(series, is_mean)| {
             if *is_mean { series.into_iter().map(|x| size * x).collect() } else { Vec::new() }
         });
-        all.push(Local { group, series: series.collect() });
+        all.push(Local { group, series: series.collect(), friction_of: None });
     };
     for variable in SMOOTH {
         for series in functions(variable, &motions, joint, tunables) {
@@ -128,8 +130,10 @@ fn lagged(motions: &[&Motion<'_>], joint: usize, lag: f64) -> Vec<Vec<f64>> {
     motions.iter().map(of).collect()
 }
 
-/// Half waves over a log in which its friction varies.
+/// Half waves over a log in which its friction varies, at most, and the shortest of them \[s\]: friction
+/// follows the temperature.
 const PARTS: usize = 8;
+const SHORTEST: f64 = 5.0;
 
 /// Friction that differs between logs, and, in a drift, between repetitions. In a log that does not
 /// repeat it varies with time.
@@ -139,7 +143,8 @@ fn of_logs(records: &[Record<'_>], joint: usize, tunables: &Tunables) -> Vec<Loc
         let motion = &record.motion;
         let scale = motion.scale(joint);
         let time = Range::of(motion.t.iter());
-        let waves = if motion.closed { 0 } else { PARTS };
+        let lasting = (record.duration() / SHORTEST) as usize;
+        let waves = if motion.closed { 0 } else { lasting.min(PARTS) };
         for (size, series) in
             [(scale.coulomb, &motion.senses[joint]), (scale.viscous, &motion.rates[joint])]
         {
@@ -148,7 +153,8 @@ fn of_logs(records: &[Record<'_>], joint: usize, tunables: &Tunables) -> Vec<Loc
                 let of = |(x, t): (&f64, &f64)| size * x * time.wave(*t, wave);
                 let mut by_record = vec![Vec::new(); records.len()];
                 by_record[number] = series.iter().zip(&motion.t).map(of).collect();
-                all.push(Local { group: Group::LogFriction, series: by_record });
+                let friction_of = (wave == 0).then_some(number);
+                all.push(Local { group: Group::LogFriction, series: by_record, friction_of });
             }
         }
     }

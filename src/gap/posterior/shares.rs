@@ -29,6 +29,14 @@ impl Fit {
         (self.smooth(design, joint, &is_of_day) + error(design, joint, more)).sqrt()
     }
 
+    /// Everyday errors of a joint that the baseline has, too, of the joint's torque.
+    #[must_use]
+    pub(in crate::gap) fn of_baseline(&self, design: &Design, joint: usize) -> f64 {
+        let smooth = self.smooth(design, joint, &is_everyday);
+        let size = |range: usize| self.sizes[joint].error[range + BASELINE].value.powi(2);
+        (smooth + error(design, joint, size)).sqrt()
+    }
+
     /// The variable of the largest smooth error of a joint, if smooth errors are most of it.
     #[must_use]
     pub(in crate::gap) fn largest_variable(
