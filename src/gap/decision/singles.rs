@@ -46,15 +46,6 @@ impl Search<'_> {
                 None => best.push((net, piece)),
             }
         }
-        // The gain at given sizes of everyday errors is the most that is left when these are fitted.
-        let key = |of: &PieceRows| (of.effect.id, of.in_baseline);
-        let sum = |of: &PieceRows| -> f64 {
-            best.iter().filter(|(_, other)| key(other) == key(of)).map(|(net, _)| net).sum()
-        };
-        let sums: Vec<f64> = best.iter().map(|(_, of)| sum(of)).collect();
-        let least = self.design.tunables.least_nats;
-        let mut kept = sums.iter().map(|sum| *sum > least);
-        best.retain(|_| kept.next().unwrap_or(false));
         best.sort_by(|a, b| b.0.total_cmp(&a.0));
         let (of_robot, new) = best.into_iter().partition(|(_, piece)| piece.in_baseline);
         [of_robot, new]
