@@ -1,7 +1,7 @@
 //! How much an effect differs from log to log.
 
+use super::found::may_be_in_baseline;
 use super::search::Search;
-use super::since::may_be_in_baseline;
 use crate::gap::data::RecordKind;
 use crate::gap::posterior::{Fit, Gains};
 

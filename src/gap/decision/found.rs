@@ -1,6 +1,7 @@
 //! Sets of effects that a search looks at.
 
-use crate::arm::effects::Effect;
+use crate::arm::effects::{Acts, Effect, Nature};
+use crate::gap::data::{Record, RecordKind};
 use crate::gap::design::PieceRows;
 use crate::gap::posterior::Fit;
 
@@ -71,4 +72,16 @@ pub(in crate::gap) struct Searched {
     pub tried: Vec<Tried>,
     /// The best ones of each size.
     pub near: Vec<Found>,
+}
+
+/// The records with those of the baseline as if they were of today; `None` without a baseline.
+pub(super) fn all_as_now<'a>(records: &[Record<'a>]) -> Option<Vec<Record<'a>>> {
+    let has_baseline = records.iter().any(|record| record.kind == RecordKind::Before);
+    has_baseline.then(|| records.iter().map(Record::as_now).collect())
+}
+
+/// Whether the baseline may have an effect, too. It has the same parameters anyway, and what acts at times
+/// acts at others there.
+pub(super) fn may_be_in_baseline(effect: &Effect) -> bool {
+    effect.nature != Nature::Parameters && !matches!(effect.acts, Acts::InWindow | Acts::OverTime)
 }

@@ -3,9 +3,8 @@
 use crate::arm::effects::{Acts, Effect, Nature, Scope, Subject};
 use rayon::prelude::*;
 
-use super::found::{Candidate, Found, Searched};
+use super::found::{Candidate, Found, Searched, all_as_now, may_be_in_baseline};
 use super::shape::{lowest, moves, refined};
-use super::since::{all_as_now, may_be_in_baseline};
 use super::waves::Waves;
 use super::window::Windows;
 use crate::gap::data::Record;

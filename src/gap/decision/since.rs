@@ -2,25 +2,13 @@
 
 use rayon::prelude::*;
 
-use super::found::Found;
+use super::found::{Found, may_be_in_baseline};
 use super::search::Search;
 use super::window::Windows;
-use crate::arm::effects::{Acts, Effect, Nature};
-use crate::gap::data::{Record, RecordKind};
+use crate::arm::effects::Acts;
+use crate::gap::data::Record;
 use crate::gap::design::PieceRows;
 use crate::gap::posterior::Gains;
-
-/// The records with those of the baseline as if they were of today; `None` without a baseline.
-pub(super) fn all_as_now<'a>(records: &[Record<'a>]) -> Option<Vec<Record<'a>>> {
-    let has_baseline = records.iter().any(|record| record.kind == RecordKind::Before);
-    has_baseline.then(|| records.iter().map(Record::as_now).collect())
-}
-
-/// Whether the baseline may have an effect, too. It has the same parameters anyway, and what acts at times
-/// acts at others there.
-pub(super) fn may_be_in_baseline(effect: &Effect) -> bool {
-    effect.nature != Nature::Parameters && !matches!(effect.acts, Acts::InWindow | Acts::OverTime)
-}
 
 /// Evidence that effect `number` of a set came after the baseline \[nats\]: against its being in the baseline
 /// as well, or, where it acts once, against what acts in the best window of the baseline. `None` without a
