@@ -14,7 +14,7 @@ use rust_source::tokens::tokens;
 const MIN_TERMS: usize = 40;
 
 /// Pages for users and contributors.
-const PAGES: [&str; 22] = [
+const PAGES: [&str; 23] = [
     "README.md",
     "CONTRIBUTING.md",
     "docs/architecture.md",
@@ -23,6 +23,7 @@ const PAGES: [&str; 22] = [
     "docs/changes.md",
     "docs/check.md",
     "docs/controller.md",
+    "docs/editors.md",
     "docs/effects.md",
     "docs/energy.md",
     "docs/format.md",

@@ -137,16 +137,21 @@ static BY_NAME: LazyLock<HashSet<String>> = LazyLock::new(|| {
     NAMES.iter().flat_map(|line| line.split_whitespace()).map(str::to_lowercase).collect()
 });
 
-/// Whether `RobotWare` or one of its options has this name; `key` in lower case.
+/// Whether `RobotWare` or one of its options has this name, or has constants that begin like it; `key`
+/// in lower case.
 pub fn is_known(key: &str) -> bool {
     let starts =
         |start: &str| key.get(..start.len()).is_some_and(|head| head.eq_ignore_ascii_case(start));
+    is_listed(key) || CONSTANTS.iter().any(|start| starts(start))
+}
+
+/// Whether `RobotWare` or one of its options surely has this name; `key` in lower case.
+pub fn is_listed(key: &str) -> bool {
     instruction(key).is_some()
         || function(key).is_some()
         || predefined(key).is_some()
         || error(key).is_some()
         || BY_NAME.contains(key)
-        || CONSTANTS.iter().any(|start| starts(start))
 }
 
 /// The names of the instructions and functions whose parameters are known.

@@ -34,6 +34,6 @@ pub use index::{function, instruction, is_movement, is_of_move_family, may_write
 pub use instruction::{
     Count, Effect, Instruction, Level, MoveForm, MoveKind, MoveSignature, Setting, Wait,
 };
-pub use known::{is_known, routine_names};
+pub use known::{is_known, is_listed, routine_names};
 pub use parameter::ArgumentPlace;
 pub use types::{DataType, SignalKind, data_type};

@@ -31,7 +31,7 @@ pub fn format(file: &SourceFile, style: &Style) -> Vec<Edit> {
 
 /// The edits that format the statements, declarations and comments that a range of bytes touches, and
 /// no others.
-#[cfg(feature = "internals")]
+#[cfg(any(feature = "internals", feature = "lsp"))]
 #[must_use]
 pub fn format_range(file: &SourceFile, range: Range<u32>, style: &Style) -> Vec<Edit> {
     checked(file, style, Some(&range))

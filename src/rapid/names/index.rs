@@ -54,6 +54,19 @@ impl Names {
         id.0 < self.predefined
     }
 
+    /// The predefined types, data and routines.
+    #[cfg(feature = "lsp")]
+    pub fn built_ins(&self) -> impl Iterator<Item = DeclarationId> + '_ {
+        self.siblings(0, self.predefined).flat_map(|module| self.inside(module))
+    }
+
+    /// The text of a whole predefined declaration; `None` for one of a file.
+    #[cfg(feature = "lsp")]
+    #[must_use]
+    pub fn built_in_text(&self, id: DeclarationId) -> Option<&'static str> {
+        self.is_predefined(id).then(|| predefined::text(self.declaration(id).whole))
+    }
+
     /// The modules of all files, in order; of a file with declarations outside modules, the file.
     pub fn modules(&self) -> impl Iterator<Item = DeclarationId> + '_ {
         self.siblings(self.predefined, self.declarations.len() as u32)

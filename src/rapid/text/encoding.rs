@@ -67,6 +67,23 @@ impl Charset {
         self.encoding.decode_without_bom_handling(bytes).0
     }
 
+    /// The characters of a part of a file that begins with a whole one, each with its number of bytes;
+    /// an invalid byte is U+FFFD.
+    pub fn characters(self, bytes: &[u8]) -> impl Iterator<Item = (usize, char)> + '_ {
+        let mut rest = bytes;
+        std::iter::from_fn(move || {
+            let first = *rest.first()?;
+            let (head, tail) = rest.split_at_checked(self.width(rest).max(1))?;
+            rest = tail;
+            let sign = if first.is_ascii() {
+                char::from(first)
+            } else {
+                self.decode(head).chars().next().unwrap_or(char::REPLACEMENT_CHARACTER)
+            };
+            Some((head.len(), sign))
+        })
+    }
+
     /// Encodes text for this file; `None` if the encoding lacks one of its characters.
     #[must_use]
     pub fn encode(self, text: &str) -> Option<Vec<u8>> {

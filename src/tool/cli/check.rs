@@ -1,6 +1,6 @@
 //! `joulepath check`: would the controller load the program?
 
-mod tasks;
+pub(super) mod tasks;
 
 use std::io::{IsTerminal, Write};
 use std::path::PathBuf;

@@ -1,14 +1,22 @@
 //! `joulepath lsp`: the language server.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
+use rayon::prelude::*;
 
-use super::common::CellArgs;
+use super::check::tasks;
+use super::common::{self, CellArgs};
+use super::input;
 use super::lint::{LintArgs, Setup};
+use crate::rapid::format::Style;
+use crate::rapid::syntax::{self, Parse};
 use crate::tool::lint::Programs;
-use crate::tool::lsp::{self, Options};
+use crate::tool::lsp::{self, Host, Options, ProjectFiles, TaskFiles};
+
+/// The procedure that starts a program, where nothing names another one.
+const ENTRY: &str = "main";
 
 /// Serve an editor over standard input and output (Language Server Protocol).
 #[derive(Debug, Args)]
@@ -31,21 +39,64 @@ pub(super) struct LspArgs {
 pub(super) fn run(args: &LspArgs) -> anyhow::Result<ExitCode> {
     let LspArgs { robot, entry, inputs } = args;
     let defaults = Options { robot: robot.clone(), entry: entry.clone(), inputs: inputs.clone() };
-    lsp::serve(defaults, programs)?;
+    lsp::serve(defaults, Disk)?;
     Ok(ExitCode::SUCCESS)
 }
 
-/// The programs of a folder; none if it cannot be read or the robot is unknown, so that only open
-/// documents are linted.
-fn programs(options: &Options, folder: &Path) -> Programs {
-    let cell = CellArgs {
-        paths: folder.is_dir().then(|| folder.to_path_buf()).into_iter().collect(),
-        robot: options.robot.clone(),
-        entry: options.entry.clone(),
-        inputs: options.inputs.clone(),
-        quiet: true,
-        ..CellArgs::default()
-    };
-    let args = LintArgs { cell, ..LintArgs::default() };
-    Setup::new(&args).map(|setup| setup.programs).unwrap_or_default()
+/// Files and settings on disk.
+struct Disk;
+
+impl Host for Disk {
+    fn project(&self, options: &Options, folder: &Path) -> ProjectFiles {
+        let cell = CellArgs { paths: existing(folder), ..CellArgs::default() };
+        if cell.paths.is_empty() {
+            return ProjectFiles::default();
+        }
+        // A wrong configuration is reported by the commands; here it names no entry.
+        let configured = common::configuration(&cell).ok().and_then(|(config, _)| config.entry);
+        let entry = options.entry.clone().or(configured).unwrap_or_else(|| ENTRY.to_owned());
+        let Ok(input) = input::read(&cell.paths) else { return ProjectFiles::default() };
+        let parses: Vec<Parse> =
+            input.files.par_iter().map(|file| syntax::parse(&file.source.bytes)).collect();
+        let tasks = tasks::tasks(&input, &parses, &entry);
+        // All that is in no backup counts as one controller.
+        let controller = |file: &usize| {
+            let place = input.files[*file].place.as_ref();
+            place.map_or(input.backups.len(), |place| place.backup)
+        };
+        let task = |task: tasks::TaskFiles| {
+            let controller = task.files.first().map_or(0, controller);
+            let tasks::TaskFiles { files, extent, entry, .. } = task;
+            TaskFiles { files, extent, entry, controller }
+        };
+        let tasks = tasks.into_iter().map(task).collect();
+        let files = input.files.into_iter().map(|file| file.source).collect();
+        ProjectFiles { files, tasks }
+    }
+
+    /// None if the folder cannot be read or the robot is unknown, so that only open documents are
+    /// linted.
+    fn programs(&self, options: &Options, folder: &Path) -> Programs {
+        let cell = CellArgs {
+            paths: existing(folder),
+            robot: options.robot.clone(),
+            entry: options.entry.clone(),
+            inputs: options.inputs.clone(),
+            quiet: true,
+            ..CellArgs::default()
+        };
+        let args = LintArgs { cell, ..LintArgs::default() };
+        Setup::new(&args).map(|setup| setup.programs).unwrap_or_default()
+    }
+
+    fn style(&self, file: &Path) -> Result<Style, String> {
+        let cell = CellArgs { paths: vec![file.to_path_buf()], ..CellArgs::default() };
+        let (config, _) = common::configuration(&cell).map_err(|error| format!("{error:#}"))?;
+        Ok(config.format.style())
+    }
+}
+
+/// The folder, if there is one.
+fn existing(folder: &Path) -> Vec<PathBuf> {
+    folder.is_dir().then(|| folder.to_path_buf()).into_iter().collect()
 }

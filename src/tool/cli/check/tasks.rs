@@ -16,21 +16,21 @@ use crate::tool::cli::input::{self, Input, InputFile};
 const SHARED: usize = 4_000;
 
 /// The files of a task.
-pub(super) struct TaskFiles {
+pub(in crate::tool::cli) struct TaskFiles {
     /// Their numbers.
-    pub(super) files: Vec<usize>,
+    pub(in crate::tool::cli) files: Vec<usize>,
     /// How much of the task they are.
-    pub(super) extent: Extent,
+    pub(in crate::tool::cli) extent: Extent,
     /// The procedure that starts it.
-    pub(super) entry: String,
+    pub(in crate::tool::cli) entry: String,
     /// Whether they have it.
-    pub(super) starts: bool,
+    pub(in crate::tool::cli) starts: bool,
 }
 
 /// The tasks of the input: those of backups, the programs of `.pgf` files, and the rest, which is
 /// one program if it has one entry. With several, each is a program together with the files of its
 /// folder that have none.
-pub(super) fn tasks(input: &Input, parses: &[Parse], entry: &str) -> Vec<TaskFiles> {
+pub(in crate::tool::cli) fn tasks(input: &Input, parses: &[Parse], entry: &str) -> Vec<TaskFiles> {
     let mut tasks = of_backups(input, parses, entry);
     let mut taken: BTreeSet<usize> = tasks.iter().flat_map(|task| task.files.clone()).collect();
     let facts = Facts { input, parses, entry };

@@ -1,0 +1,46 @@
+//! What the server needs from outside.
+
+use std::path::Path;
+
+use super::options::Options;
+use crate::rapid::check::Extent;
+use crate::rapid::format::Style;
+use crate::rapid::text::SourceFile;
+use crate::tool::lint::Programs;
+
+/// Reads files and settings for the server.
+pub trait Host {
+    /// The modules in a folder and its folders; none if it cannot be read.
+    fn project(&self, options: &Options, folder: &Path) -> ProjectFiles;
+
+    /// The programs of a folder for the linter.
+    fn programs(&self, options: &Options, folder: &Path) -> Programs;
+
+    /// The style in which a file is formatted.
+    ///
+    /// # Errors
+    /// Its configuration is wrong.
+    fn style(&self, file: &Path) -> Result<Style, String>;
+}
+
+/// The modules of a folder.
+#[derive(Clone, Debug, Default)]
+pub struct ProjectFiles {
+    /// The files.
+    pub files: Vec<SourceFile>,
+    /// Which of them are loaded together. A file may be in several tasks.
+    pub tasks: Vec<TaskFiles>,
+}
+
+/// The files of a task.
+#[derive(Clone, Debug)]
+pub struct TaskFiles {
+    /// Their numbers.
+    pub files: Vec<usize>,
+    /// How much of the task they are.
+    pub extent: Extent,
+    /// The procedure that starts it.
+    pub entry: String,
+    /// The number of the controller: its tasks share their global persistents.
+    pub controller: usize,
+}
