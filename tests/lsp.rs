@@ -249,9 +249,9 @@ fn a_change_updates_the_open_documents_of_its_program() {
 fn closing_a_document_updates_the_other_documents() {
     let folder = tempfile::tempdir().unwrap();
     let data = fs::read_to_string("fixtures/lint/plants/Shared.mod").unwrap();
-    let work = "MODULE Work\nPROC rWork()\n    MoveJ pAUp,v1000,fine,tGripper;\n    \
+    let work = "MODULE Work\nPROC rWork()\n    MoveJ pAUp,v1500,fine,tGripper;\n    \
                 MoveL pA,v300,fine,tGripper;\n    WaitTime 1;\nENDPROC\n\
-                PROC rStay()\n    MoveJ pBUp,v1000,fine,tGripper;\n    WaitTime 1;\nENDPROC\n\
+                PROC rStay()\n    MoveJ pBUp,v1500,fine,tGripper;\n    WaitTime 1;\nENDPROC\n\
                 ENDMODULE\n";
     let cell = "MODULE Cell\nPROC main()\n    MoveAbsJ jHome,v1000,fine,tGripper;\n    rWork;\n    \
                 rStay;\n    MoveAbsJ jHome,v1000,fine,tGripper;\nENDPROC\nENDMODULE\n";

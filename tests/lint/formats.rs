@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
+use joulepath::tool::report::lint::top::Year;
 use joulepath::tool::report::lint::{github, gitlab, json, junit, sarif};
 use serde_json::{Value, json};
 
@@ -15,7 +16,8 @@ use crate::schema::{assert_known, errors};
 fn json_has_the_fields_of_the_contract() {
     let all = fixtures();
     let fixture = all.iter().find(|it| it.path.ends_with("EW103_tiny_zone.mod")).unwrap();
-    let value = json::json(&fixture.report(), &fixture.files);
+    let year = Year { count: 10, hours: 4000.0, price: 0.2 };
+    let value = json::json(&fixture.report(), &fixture.files, &year);
     let finding = &value["findings"][0];
     for key in [
         "code",
@@ -34,15 +36,25 @@ fn json_has_the_fields_of_the_contract() {
         "per",
         "assumptions",
         "fix",
+        "confidence",
+        "places",
+        "at_stake_j",
     ] {
         assert!(finding.get(key).is_some(), "{key}");
     }
     let edit = &finding["fix"]["edits"][0];
     let (start, end) = (edit["start"].as_u64().unwrap(), edit["end"].as_u64().unwrap());
     assert_eq!(&fixture.files[0].bytes[start as usize..end as usize], b"z1");
-    for key in ["findings", "saving_j", "cycle_energy_j", "unresolved"] {
+    for key in ["findings", "saving_j", "cycle_energy_j", "unresolved", "movements_simulated"] {
         assert!(value["totals"].get(key).is_some(), "{key}");
     }
+    let first = &value["top"][0];
+    let number = |value: &Value| value.as_f64().unwrap();
+    let (joules, share) = (number(&first["saving_j"]), number(&first["share"]));
+    let cycle = number(&value["totals"]["cycle_energy_j"]);
+    assert!((joules - share * cycle).abs() < 1e-9 * cycle);
+    let cost = number(&first["cost_per_year"]);
+    assert!((cost - 0.2 * number(&first["kwh_per_year"])).abs() < 1e-9 * cost);
 }
 
 /// The other formats contain every finding.

@@ -17,9 +17,11 @@ use std::path::PathBuf;
 
 use joulepath::arm::effects;
 use joulepath::arm::robot::Model;
+use joulepath::rapid::diagnostics::Severity;
 use joulepath::rapid::text::{FileId, SourceFile};
 use joulepath::retime::motion::Options;
-use joulepath::tool::lint::{ALL, Finding, Group, Job, Needs, Report, Settings, lint};
+use joulepath::tool::lint::ranking::{joules, top};
+use joulepath::tool::lint::{ALL, Confidence, Finding, Group, Job, Needs, Report, Settings, lint};
 
 /// A program with the settings in its first comments.
 pub(crate) struct Fixture {
@@ -184,25 +186,30 @@ fn a_program_of_movements_alone_has_no_unnecessary_movement() {
             "MODULE M
                 CONST robtarget p1:=[[600,0,400],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
                 CONST robtarget p2:=[[600,0,600],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
-                CONST robtarget p3:=[[700,0,700],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+                CONST robtarget p3:=[[900,0,700],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+                CONST robtarget p4:=[[700,300,500],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
                 PROC main()
                     MoveJ p3,v1000,fine,tool0;
                     {wait}
+                    MoveJ p4,v1000,z50,tool0;
                     MoveJ p1,v1000,fine,tool0;
                     MoveJ p2,v1000,z50,tool0;
                     MoveJ p1,v1000,fine,tool0;
                     {wait}
+                    MoveJ p4,v1000,z50,tool0;
                     MoveJ p2,v1000,z50,tool0;
                     MoveJ p3,v1000,z50,tool0;
                     MoveJ p1,v1000,z50,tool0;
-                    MoveJ p2,v1000,fine,tool0;
+                    MoveJ p2,v1000,z50,tool0;
+                    MoveJ p4,v1000,fine,tool0;
                 ENDPROC
             ENDMODULE"
         )
     };
     let codes = |text: &str| -> Vec<&'static str> {
         let report = Fixture::new("M.mod".into(), text).report();
-        let codes = report.findings.iter().map(|finding| finding.rule.code);
+        let doubtful = report.findings.iter().filter(|it| it.confidence == Confidence::Low);
+        let codes = doubtful.map(|finding| finding.rule.code);
         codes.filter(|code| ["EW402", "EW403"].contains(code)).collect()
     };
     assert_eq!(codes(&program("WaitTime 1;")), ["EW402", "EW403"]);
@@ -220,15 +227,18 @@ fn a_home_pose_is_at_the_start_and_the_end_of_a_program() {
                 CONST robtarget p3:=[[700,-200,700],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
                 PROC main()
                     MoveJ p1,v1000,fine,tool0;
-                    MoveJ p2,v1000,fine,tool0;
-                    WaitTime 1;
+                    rAt p2;
                     MoveJ p1,v1000,{zone},tool0;
-                    MoveJ p3,v1000,fine,tool0;
-                    WaitTime 1;
+                    rAt p3;
                     MoveJ p1,v1000,{zone},tool0;
-                    MoveJ p2,v1000,fine,tool0;
-                    WaitTime 1;
+                    rAt p2;
                     MoveJ {end},v1000,fine,tool0;
+                ENDPROC
+                PROC rAt(robtarget p)
+                    MoveJ Offs(p,0,0,100),v1000,z10,tool0;
+                    MoveL p,v500,fine,tool0;
+                    WaitTime 1;
+                    MoveL Offs(p,0,0,100),v500,z10,tool0;
                 ENDPROC
             ENDMODULE"
         )
@@ -259,4 +269,112 @@ fn the_first_movement_has_no_findings() {
     let line = |finding: &Finding| finding.span.start as usize <= text.find("MoveL p2").unwrap();
     let early = report.findings.iter().filter(|it| ["EW404", "EW604"].contains(&it.rule.code));
     assert_eq!(early.filter(|finding| line(finding)).count(), 0);
+}
+
+/// A lift behind a grip is no trip home, and no finding proposes to leave it out, whatever else it looks
+/// like; nothing touches what is drilled.
+#[test]
+fn nothing_is_proposed_next_to_work_or_for_a_process() {
+    let text = "MODULE M
+        ! robot: IRB1600-10/1.45
+        CONST jointtarget jHome:=[[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+        CONST robtarget p1:=[[900,0,600],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+        CONST robtarget p2:=[[700,400,600],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+        CONST speeddata vDrill:=[4,500,5000,1000];
+        PROC main()
+            MoveAbsJ jHome,v1000,fine,tool0;
+            MoveJ p1,v1000,fine,tool0;
+            Set doGrip;
+            MoveAbsJ jHome,v1000,fine,tool0;
+            MoveJ p2,v1000,fine,tool0;
+            Reset doGrip;
+            MoveAbsJ jHome,v1000,fine,tool0;
+            MoveJ p2,v1000,fine,tool0;
+            WaitTime 1;
+            MoveL Offs(p2,0,0,-4),vDrill,fine,tool0;
+            MoveL Offs(p2,0,0,-8),vDrill,fine,tool0;
+            MoveL Offs(p2,0,0,-12),vDrill,fine,tool0;
+            MoveL p2,v200,fine,tool0;
+            MoveAbsJ jHome,v1000,fine,tool0;
+        ENDPROC
+    ENDMODULE";
+    let report = Fixture::new("M.mod".into(), text).report();
+    for finding in report.findings.iter().filter(|it| it.saving.is_some() || it.fix.is_some()) {
+        let line = text[finding.span.start as usize..finding.span.end as usize].to_owned();
+        let drills = line.contains("vDrill");
+        let removes = finding.change.starts_with("leaving out");
+        assert!(!drills && !removes, "{line}: {}", finding.full_message());
+    }
+}
+
+/// Where the main routine is a menu or missing, each procedure that it may start is simulated by itself.
+#[test]
+fn procedures_of_a_menu_are_simulated_by_themselves() {
+    let program = |main: &str| {
+        format!(
+            "MODULE M
+                ! robot: IRB1600-10/1.45
+                CONST jointtarget jHome:=[[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+                CONST jointtarget jOut:=[[40,20,10,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+                {main}
+                PROC rOne()
+                    rAway;
+                    WaitTime 1;
+                    MoveAbsJ jHome,v1000,fine,tool0;
+                ENDPROC
+                PROC rTwo()
+                    MoveAbsJ jHome,v1000,fine,tool0;
+                    MoveAbsJ jOut,v1000,fine,tool0;
+                ENDPROC
+                PROC rAway()
+                    MoveAbsJ jHome,v1000,fine,tool0;
+                    MoveAbsJ jOut,v1000,fine,tool0;
+                ENDPROC
+                PROC rWith(num x)
+                    MoveAbsJ jOut,v1000,fine,tool0;
+                ENDPROC
+            ENDMODULE"
+        )
+    };
+    let menu = "VAR num nJob;
+        PROC main()
+            TPReadFK nJob,\"Job\",\"1\",\"2\",stEmpty,stEmpty,stEmpty;
+            TEST nJob
+            CASE 1: rOne;
+            CASE 2: rTwo;
+            ENDTEST
+        ENDPROC";
+    for main in ["", menu] {
+        let report = Fixture::new("M.mod".into(), &program(main)).report();
+        let coverage = &report.coverage;
+        assert_eq!((coverage.simulated, coverage.movements), (5, 6), "{:?}", coverage.missing);
+        assert!(coverage.note().unwrap().starts_with("5 of 6 movements simulated; 1: "));
+        assert!(report.cycle_energy_j.is_some());
+    }
+    // A procedure that a complete program does not call is none of its cycle.
+    let whole = Fixture::new("M.mod".into(), &program("PROC main() rTwo; ENDPROC")).report();
+    assert_eq!(whole.coverage.simulated, 2);
+}
+
+/// The list of things to fix is by joules, the doubtful ones last.
+#[test]
+fn the_list_of_things_to_fix_begins_with_the_most_joules() {
+    let mut listed = 0;
+    for fixture in fixtures() {
+        let report = fixture.report();
+        let list = top(&report.findings, 3);
+        let low = |finding: &&&Finding| finding.confidence == Confidence::Low;
+        assert!(list.len() <= 3 && list.iter().skip_while(|it| !low(it)).all(|it| low(&it)));
+        for pair in list.windows(2).filter(|pair| pair[0].confidence == pair[1].confidence) {
+            assert!(joules(pair[0]) >= joules(pair[1]));
+        }
+        let worth = |finding: &&Finding| finding.severity > Severity::Info;
+        for finding in report.findings.iter().filter(worth) {
+            let share = finding.saving.zip(finding.cycle).map(|(a, b)| a.energy_j / b.energy_j);
+            assert!(share.is_none_or(|share| share >= 0.01), "{}", finding.full_message());
+            assert!(finding.confidence == Confidence::Usual, "{}", finding.full_message());
+        }
+        listed += list.len();
+    }
+    assert!(listed > 20, "{listed}");
 }

@@ -19,10 +19,30 @@ threshold (1 J, `--threshold`, or `[lint]` of the configuration) are not reporte
 change that saves nothing or whose interval reaches below zero.
 
 **Fixes** are *safe* where path, order and end points provably stay, else *unsafe*. `--fix` applies
-safe ones, `--unsafe-fixes` both, `--diff` shows what they would do. Each is simulated before and
-after; it is taken back where the cycle does not take less energy, or waits and outputs are not the
-same in the same order at the same places. So fixes need a robot. Where only the person who knows
-the cell can tell waste from a need of the process, a rule offers none.
+safe ones, `--unsafe-fixes` both, `--diff` shows what they would do. Before a fix is offered, it is made
+in the text and the whole program is simulated again: it is not offered where the cycle takes more energy, or
+where targets, waits and outputs are not the same in the same order at the same places. So fixes need a
+robot. Where only the person who knows the cell can tell waste from a need of the process, a rule offers
+none.
+
+**Work** is an output, a wait, another tool or load, and everything else that may need a robot that stands.
+Directly before and behind work no rule proposes to leave out a movement or to give it a zone: it may be the
+lift behind a grip. Only EW104 does so for a stop whose one purpose is an output, as a finding of low confidence without a
+fix. A **process** is a movement below 200 mm/s, or one with an output that is on for lines and arcs alone and holds no
+part: no rule changes its speed.
+
+**Severity** follows joules and confidence: a saving of at least 1 % of the cycle is a warning, a smaller one
+information. A finding of low confidence is information whatever it saves. Findings without joules have the
+severity of their rule.
+
+**What to fix first**: the text ends with a list by joules of a cycle, with the kilowatt hours and the
+price of a year (`--top N`, `--hours`, `--price`); `top` in the JSON. Findings of low confidence come last. \"Up
+to\" marks what a fixed wait takes: how much of it can be saved only the cell knows.
+
+**What is simulated**: the entry of the program; where it is missing or moves nothing, each procedure with
+movements that no other one calls; and where it is a menu, each procedure that it may call and that the
+simulated run did not come by. A cycle is then one run of each of them. Where not all movements are
+simulated, the last line says how many are, and why the others are not.
 
 **Comments** take findings back: `! joulepath: ignore EW101 reason`, at the end of the statement's
 first line or on a line of its own above it.

@@ -450,3 +450,17 @@ pub(super) fn note(quiet: bool, text: &str) {
         writeln!(std::io::stderr(), "note: {text}").unwrap_or_default();
     }
 }
+
+/// Hours in which a cell works in a year, unless the user says otherwise: two shifts.
+const HOURS_PER_YEAR: f64 = 4000.0;
+/// Hours of a leap year.
+const HOURS_OF_A_YEAR: f64 = 8784.0;
+
+/// The stated hours of a year, or the usual ones.
+pub(super) fn hours_per_year(stated: Option<f64>) -> anyhow::Result<f64> {
+    let hours = stated.unwrap_or(HOURS_PER_YEAR);
+    if !(hours > 0.0 && hours <= HOURS_OF_A_YEAR) {
+        bail!("hours_per_year = {hours}: give hours above 0, at most {HOURS_OF_A_YEAR}");
+    }
+    Ok(hours)
+}

@@ -21,6 +21,12 @@ use crate::rapid::text::{FileId, SourceFile, is_encoded_module};
 use crate::tool::config::Config;
 use crate::tool::lint::{self, Applicability, Fixed, Group, Programs, Report, Settings, System};
 use crate::tool::report;
+use crate::tool::report::lint::top::Year;
+
+/// Entries of the list of things to fix first, unless `--top` says otherwise.
+const TOP: usize = 10;
+/// Price of a kilowatt hour for industry in euros, rounded, unless `--price` says otherwise.
+const PRICE: f64 = 0.2;
 
 /// Find wasted energy in RAPID programs.
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
@@ -64,9 +70,21 @@ pub(super) struct LintArgs {
     #[arg(long)]
     pub(super) diff: bool,
 
-    /// Count findings by rule, and list those that save most, on standard error.
+    /// Count findings by rule, on standard error.
     #[arg(long)]
     pub(super) statistics: bool,
+
+    /// Most entries of the list of things to fix first.
+    #[arg(long, value_name = "N", default_value_t = TOP)]
+    pub(super) top: usize,
+
+    /// Hours in which the cell works in a year; otherwise those of joulepath.toml, or 4000.
+    #[arg(long, value_name = "HOURS", allow_negative_numbers = true)]
+    pub(super) hours: Option<f64>,
+
+    /// Price of a kilowatt hour, in any currency.
+    #[arg(long, value_name = "PRICE", default_value_t = PRICE, allow_negative_numbers = true)]
+    pub(super) price: f64,
 
     /// Exit with 1 where the findings waste more: 500J, or 3% of the cycle.
     #[arg(long, value_name = "500J|3%", allow_hyphen_values = true)]
@@ -180,6 +198,7 @@ pub(super) struct Setup {
     pub(super) programs: Programs,
     baseline: Option<PathBuf>,
     max_waste: Option<Limit>,
+    year: Year,
 }
 
 impl Setup {
@@ -203,8 +222,14 @@ impl Setup {
         let baseline = args.baseline.clone().or_else(|| config.lint.baseline.as_ref().map(beside));
         let limit = args.max_waste.as_ref().or(config.lint.max_waste.as_ref());
         let max_waste = limit.map(|text| Limit::parse(text)).transpose()?;
+        let hours = common::hours_per_year(args.hours.or(config.hours_per_year))?;
+        let price = args.price;
+        if !(price.is_finite() && price >= 0.0) {
+            bail!("--price {price}: give a price from 0");
+        }
+        let year = Year { count: args.top, hours, price };
         let programs = Programs { files, groups, model, options, settings };
-        Ok(Setup { programs, baseline, max_waste })
+        Ok(Setup { programs, baseline, max_waste, year })
     }
 }
 
@@ -387,10 +412,13 @@ fn write(args: &LintArgs, setup: &Setup, report: &Report) -> anyhow::Result<()> 
             let ansi = std::io::stdout().is_terminal();
             let paint = if ansi { Paint::Ansi } else { Paint::Plain };
             write!(out, "{}", report::lint::text::full(report, files, paint))?;
+            write!(out, "{}", report::lint::top::text(report, files, &setup.year))?;
             write!(out, "{}", report::lint::text::summary(report))?;
         }
         LintFormat::Concise => write!(out, "{}", report::lint::text::concise(report, files))?,
-        LintFormat::Json => pretty(&mut out, &report::lint::json::json(report, files))?,
+        LintFormat::Json => {
+            pretty(&mut out, &report::lint::json::json(report, files, &setup.year))?;
+        }
         LintFormat::Sarif => pretty(&mut out, &report::lint::sarif::sarif(report, files))?,
         LintFormat::Github => write!(out, "{}", report::lint::github::github(report, files))?,
         LintFormat::Gitlab => pretty(&mut out, &report::lint::gitlab::gitlab(report, files))?,
@@ -398,7 +426,15 @@ fn write(args: &LintArgs, setup: &Setup, report: &Report) -> anyhow::Result<()> 
     }
     out.flush()?;
     if args.statistics {
-        write!(std::io::stderr().lock(), "{}", report::lint::text::statistics(report, files))?;
+        write!(std::io::stderr().lock(), "{}", report::lint::text::statistics(report))?;
+    }
+    let alone = report.coverage.without_entry;
+    if alone > 0 && setup.programs.model.is_some() {
+        let text = format!(
+            "{alone} programs lack the routine that starts them (--entry NAME): their procedures are \
+             simulated one by one"
+        );
+        note(args.cell.quiet, &text);
     }
     let why = match &setup.programs.model {
         None => "no robot is named (--robot NAME)".to_owned(),

@@ -9,19 +9,12 @@ use crate::arm::robot::{Use, ready};
 use crate::tool::report::suggestions::{self as report, Shown};
 use crate::tool::suggest::{Applied, Suggestions, suggestions};
 
-/// Hours in which a cell works in a year, unless the configuration says otherwise: two shifts.
-const HOURS_PER_YEAR: f64 = 4000.0;
-/// Hours of a leap year.
-const HOURS_OF_A_YEAR: f64 = 8784.0;
 /// The word for all suggestions.
 const ALL: &str = "all";
 
 /// Lists the suggestions.
 pub(super) fn list(args: &ProgramArgs, job: &Job) -> anyhow::Result<ExitCode> {
-    let hours_per_year = job.config.hours_per_year.unwrap_or(HOURS_PER_YEAR);
-    if !(hours_per_year > 0.0 && hours_per_year <= HOURS_OF_A_YEAR) {
-        bail!("hours_per_year = {hours_per_year}: give hours above 0, at most {HOURS_OF_A_YEAR}");
-    }
+    let hours_per_year = common::hours_per_year(job.config.hours_per_year)?;
     let found = found(args, job)?;
     common::notes(args.cell.quiet, &found.notes);
     let sources = job.sources();

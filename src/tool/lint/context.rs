@@ -1,6 +1,7 @@
 //! The input of rules: a program with its control flow, its trace and its simulated cycle.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::OnceLock;
 
 use nalgebra::{Isometry3, Vector3};
 
@@ -9,10 +10,12 @@ use super::flow::{Class, Flow, Next, Place, Through};
 use super::group::Group;
 use super::saving::Evaluation;
 use super::site::{Site, constant, facts_of, site};
-use super::statements::called_name;
+use super::statements::{called_instruction, called_name};
 use super::system::System;
 use super::trace::{self, Recording, TraceStep, executions};
+use super::work::Work;
 use crate::arm::robot::Model;
+use crate::rapid::builtins::Instruction;
 use crate::rapid::ir::exec::Note;
 use crate::rapid::ir::hir::{Call, Expr, Stmt, StmtKind};
 use crate::rapid::ir::movement::{Movement, Settings, Target};
@@ -49,6 +52,10 @@ pub struct Context<'c> {
     before: Vec<Vec<usize>>,
     /// Movements before which the robot position is unknown.
     unknown_starts: BTreeSet<usize>,
+    /// Which movements are next to work.
+    pub(super) work: Work,
+    /// The steps of the trace at which a process runs.
+    pub(super) process_steps: OnceLock<BTreeSet<usize>>,
 }
 
 /// The corner at the goal of a movement, the worst case of all its executions.
@@ -128,6 +135,7 @@ impl<'c> Context<'c> {
             }
         }
         let unknown_starts = unknown_starts(program, &flow, &by_place);
+        let work = Work::new(&flow, &sites, &by_place, &before);
         Context {
             files,
             program,
@@ -142,11 +150,14 @@ impl<'c> Context<'c> {
             by_place,
             before,
             unknown_starts,
+            work,
+            process_steps: OnceLock::new(),
         }
     }
 
     /// Whether the robot position before a movement is unknown: at the start of the program or of
-    /// an uncalled routine, after an unknown call, in an error handler.
+    /// an uncalled routine, after an unknown call, after a stop at which somebody may jog, in an
+    /// error handler.
     pub fn is_unknown_before(&self, site: usize) -> bool {
         self.unknown_starts.contains(&site)
     }
@@ -347,6 +358,11 @@ fn moves_after(flow: &Flow<'_>, by_place: &BTreeMap<Place, usize>, place: Place)
     .collect()
 }
 
+/// Whether an operator may move the robot by hand at a statement: the program stops or asks.
+fn lets_jog(stmt: &Stmt) -> bool {
+    called_instruction(stmt).is_some_and(Instruction::asks_operator)
+}
+
 fn unknown_starts(
     program: &Program,
     flow: &Flow<'_>,
@@ -359,7 +375,7 @@ fn unknown_starts(
     let mut sources: Vec<Place> = entries.map(|id| (id, 0)).collect();
     let mut starts = BTreeSet::new();
     for (place, stmt, reachable) in flow.statements() {
-        if flow.loses_position(place.0, stmt) {
+        if flow.loses_position(place.0, stmt) || lets_jog(stmt) {
             sources.push(place);
         }
         if !reachable {

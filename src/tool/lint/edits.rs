@@ -3,7 +3,7 @@
 use super::context::Context;
 use super::site::Site;
 use crate::rapid::builtins::MoveForm;
-use crate::rapid::ir::movement::{Movement, Settings, Zone};
+use crate::rapid::ir::movement::{Movement, Settings, Speed, Zone};
 use crate::rapid::text::{Edit, Span};
 use crate::retime::motion::Step;
 
@@ -21,6 +21,9 @@ const SPEEDS: [u32; 20] = [
     50, 60, 80, 100, 150, 200, 300, 400, 500, 600, 800, 1000, 1500, 2000, 2500, 3000, 4000, 5000,
     6000, 7000,
 ];
+
+/// Turning speed of the predefined speeds, rad/s: 500 °/s.
+pub(super) const PREDEFINED_TURN: f64 = 8.726_646;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct NamedZone {
@@ -50,6 +53,12 @@ pub(super) fn slower(than: f64) -> impl Iterator<Item = (String, f64)> {
     below.filter(move |(_, speed)| *speed < than - 1e-9).map(|(v, speed)| (format!("v{v}"), speed))
 }
 
+/// Predefined speeds above `than`, the slowest first, m/s.
+pub(super) fn faster(than: f64) -> impl Iterator<Item = (String, f64)> {
+    let above = SPEEDS.iter().map(|speed| (*speed, f64::from(*speed) * 1e-3));
+    above.filter(move |(_, speed)| *speed > than + 1e-9).map(|(v, speed)| (format!("v{v}"), speed))
+}
+
 pub(super) fn replace(span: Span, text: &str) -> Edit {
     Edit { span, text: text.as_bytes().to_vec() }
 }
@@ -71,6 +80,12 @@ pub(super) fn with_zone(step: &Step, zone: Zone) -> Vec<Step> {
 /// A step with a limited speed, m/s.
 pub(super) fn with_speed(step: &Step, limit: f64) -> Vec<Step> {
     change_movement(step, |movement| movement.speed.tcp = movement.speed.tcp.min(limit))
+}
+
+/// A step with the speed of predefined data, m/s.
+pub(super) fn with_predefined_speed(step: &Step, speed: f64) -> Vec<Step> {
+    let speed = Speed { tcp: speed, orientation: PREDEFINED_TURN };
+    change_movement(step, |movement| movement.speed = speed)
 }
 
 /// A step with another acceleration and, if it is given, another ramp (1 = 100 %).

@@ -6,22 +6,22 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::context::Context;
+use super::coverage::Coverage;
 use super::evaluate::Cycle;
 use super::group::Group;
 use super::job::Job;
+use super::offer::offer_fixes;
+use super::parsed::{ParsedFile, program, programs, read};
+use super::ranking::severity;
 use super::register::ALL;
-use super::rule::Finding;
+use super::rule::{CycleFigures, Finding};
 use super::rules::unused_suppression;
-use super::suppress::{Suppression, suppressions};
-use super::trace;
+use super::runs;
 use crate::arm::robot::Model;
-use crate::rapid::ir::hir::Module;
-use crate::rapid::ir::lower;
-use crate::rapid::ir::program::{Program, RoutineId};
-use crate::rapid::syntax::{self, SyntaxError};
+use crate::rapid::syntax::SyntaxError;
 use crate::rapid::text::Span;
-use crate::retime::energy::account;
-use crate::retime::motion::simulate;
+
+pub use super::parsed::ReadCache;
 
 /// The result of a lint run.
 #[derive(Debug, Default)]
@@ -32,6 +32,8 @@ pub struct Report {
     pub cycle_energy_j: Option<f64>,
     /// Number of unresolved places.
     pub unresolved: usize,
+    /// How many movements are simulated, and why others are not.
+    pub coverage: Coverage,
     /// The files with syntax errors by number, in file order. Filled by [`lint`] only.
     pub syntax_errors: Vec<(usize, Vec<SyntaxError>)>,
 }
@@ -51,19 +53,6 @@ impl Report {
     }
 }
 
-/// A parsed file.
-struct ParsedFile {
-    modules: Vec<Module>,
-    errors: Vec<SyntaxError>,
-    suppressions: Vec<Suppression>,
-}
-
-/// The parsed files of the last run; unchanged files are not parsed again.
-#[derive(Default)]
-pub struct ReadCache {
-    files: Vec<(Vec<u8>, Arc<ParsedFile>)>,
-}
-
 /// A report with the simulated cycle of each program, in program order; `None` without a robot or
 /// an entry.
 pub struct Examined {
@@ -78,7 +67,7 @@ pub struct Examined {
 /// Lints all programs.
 #[must_use]
 pub fn lint(job: &Job<'_>) -> Report {
-    let read = read(job, &ReadCache::default());
+    let read = read(job);
     // Cycles are not kept: those of all programs of a plant would fill the memory.
     let report = |group: &Group| lint_group(job, group, &read).0;
     let mut report = merged(programs(job, &read).par_iter().map(report).collect());
@@ -92,7 +81,7 @@ pub fn lint(job: &Job<'_>) -> Report {
 /// Lints all programs; also returns their cycles.
 #[must_use]
 pub fn examine(job: &Job<'_>) -> Examined {
-    let read = read(job, &ReadCache::default());
+    let read = read(job);
     let groups = programs(job, &read);
     examine_programs(job, &groups, &read)
 }
@@ -100,9 +89,7 @@ pub fn examine(job: &Job<'_>) -> Examined {
 /// Lints the programs that contain a file; only changed files are parsed again.
 #[must_use]
 pub fn examine_file(job: &Job<'_>, file: usize, kept: &mut ReadCache) -> Examined {
-    let read = read(job, kept);
-    let bytes = job.files.iter().map(|file| file.bytes.clone());
-    kept.files = bytes.zip(read.iter().cloned()).collect();
+    let read = kept.read(job);
     let mut groups = programs(job, &read);
     groups.retain(|group| group.files.contains(&file));
     examine_programs(job, &groups, &read)
@@ -119,6 +106,7 @@ fn merged(reports: Vec<Report>) -> Report {
     for report in reports {
         all.findings.extend(report.findings);
         all.unresolved += report.unresolved;
+        all.coverage.add(report.coverage);
         if let Some(energy) = report.cycle_energy_j {
             *all.cycle_energy_j.get_or_insert(0.0) += energy;
         }
@@ -128,80 +116,22 @@ fn merged(reports: Vec<Report>) -> Report {
     all
 }
 
-fn read(job: &Job<'_>, kept: &ReadCache) -> Vec<Arc<ParsedFile>> {
-    job.files
-        .par_iter()
-        .enumerate()
-        .map(|(index, file)| {
-            if let Some((bytes, read)) = kept.files.get(index)
-                && *bytes == file.bytes
-            {
-                return read.clone();
-            }
-            let parse = syntax::parse(&file.bytes);
-            let modules = lower(file.id, &parse, &file.bytes);
-            let suppressions = suppressions(file, &parse);
-            Arc::new(ParsedFile { modules, errors: parse.errors, suppressions })
-        })
-        .collect()
-}
-
 /// The simulated cycle of each program, in program order; `None` without a robot or an entry.
 #[must_use]
 pub fn cycles(job: &Job<'_>) -> Vec<Option<Cycle>> {
-    let read = read(job, &ReadCache::default());
+    let read = read(job);
     let cycle = |group: &Group| {
         let program = program(group, &read);
-        program.entry(&group.entry).and_then(|entry| self::cycle(job, &program, entry))
+        runs::cycle(job, &program, program.entry(&group.entry))
     };
     programs(job, &read).par_iter().map(cycle).collect()
-}
-
-fn program(group: &Group, read: &[Arc<ParsedFile>]) -> Program {
-    let files = group.files.iter().map(|file| &read[*file]);
-    Program::new(files.flat_map(|file| file.modules.iter().cloned()).collect())
-}
-
-/// The programs of a job. A group with several entries is split by folder, and a folder with several
-/// entries by file.
-fn programs(job: &Job<'_>, read: &[Arc<ParsedFile>]) -> Vec<Group> {
-    let mut groups = Vec::new();
-    for group in &job.groups {
-        let entry = group.entry.to_lowercase();
-        let entries = |file: &usize| {
-            let modules = read[*file].modules.iter();
-            modules.flat_map(|m| &m.routines).filter(|r| r.name.key == entry).count()
-        };
-        if group.files.iter().map(entries).sum::<usize>() <= 1 {
-            groups.push(group.clone());
-            continue;
-        }
-        let mut folders: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
-        for file in &group.files {
-            let path = &job.files[*file].path;
-            let folder = path.rsplit_once('/').map_or("", |(folder, _)| folder);
-            folders.entry(folder).or_default().push(*file);
-        }
-        for files in folders.into_values() {
-            if files.iter().map(entries).sum::<usize>() <= 1 {
-                groups.push(Group { files, ..group.clone() });
-            } else {
-                let alone = |file| Group { files: vec![file], ..group.clone() };
-                groups.extend(files.into_iter().map(alone));
-            }
-        }
-    }
-    groups
 }
 
 fn lint_group(job: &Job<'_>, group: &Group, read: &[Arc<ParsedFile>]) -> (Report, Option<Cycle>) {
     let program = program(group, read);
     let entry = program.entry(&group.entry);
-    let cycle = entry.and_then(|entry| cycle(job, &program, entry));
-    let recording = match (&cycle, entry) {
-        (None, Some(entry)) => Some(trace::record(&program, entry)),
-        _ => None,
-    };
+    let cycle = runs::cycle(job, &program, entry);
+    let recording = cycle.is_none().then(|| runs::recording(&program, entry));
     let context =
         Context::new(job.files, job.model, &program, group, cycle.as_ref(), recording.as_ref());
     let mut findings = Vec::new();
@@ -224,16 +154,18 @@ fn lint_group(job: &Job<'_>, group: &Group, read: &[Arc<ParsedFile>]) -> (Report
         .filter(|_| dynamics)
         .map(|cycle| cycle.account.total.energy_j())
         .filter(|energy| energy.is_finite());
+    let coverage = Coverage::new(&context);
     let unresolved = context.unresolved.len();
-    let report = Report { findings, cycle_energy_j: energy, unresolved, ..Report::default() };
+    let time = cycle.as_ref().map(|cycle| cycle.simulation.cycle_s);
+    let figures = energy.zip(time).map(|(energy_j, time_s)| CycleFigures { energy_j, time_s });
+    offer_fixes(job, group, read, cycle.as_ref(), &mut findings);
+    for finding in &mut findings {
+        finding.cycle = figures;
+        finding.severity = severity(finding);
+    }
+    let report =
+        Report { findings, cycle_energy_j: energy, unresolved, coverage, ..Report::default() };
     (report, cycle)
-}
-
-fn cycle(job: &Job<'_>, program: &Program, entry: RoutineId) -> Option<Cycle> {
-    let model = job.model?;
-    let simulation = simulate(program, entry, model, &job.options);
-    let account = account(model, &simulation);
-    Some(Cycle::new(model, simulation, account, job.options.clone()))
 }
 
 /// Removes the suppressed findings, and adds findings for unused suppressions.

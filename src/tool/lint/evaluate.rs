@@ -240,11 +240,22 @@ fn last_run(events: &[Event]) -> Option<&Run> {
     events.iter().rev().find_map(run)
 }
 
-/// The next run after an event, or the last event.
+/// Whether the robot may be anywhere after an event: what follows does not depend on what was before.
+fn is_elsewhere(event: &Event) -> bool {
+    matches!(&event.what, What::Left(left) if left.moves)
+}
+
+/// The next run after an event, or the last event before the robot may be anywhere.
 fn next_run(simulation: &Simulation, event: usize) -> usize {
-    let last = simulation.events.len() - 1;
-    let mut behind = event + 1..=last;
-    behind.find(|index| run(&simulation.events[*index]).is_some()).unwrap_or(last)
+    for index in event + 1..simulation.events.len() {
+        if run(&simulation.events[index]).is_some() {
+            return index;
+        }
+        if is_elsewhere(&simulation.events[index]) {
+            return index - 1;
+        }
+    }
+    simulation.events.len() - 1
 }
 
 /// Extends the window until the robot ends at the same place as before the change. Returns it with
@@ -273,7 +284,8 @@ fn extended_window(
         }
         let was = last_run(&simulation.events[..=last])?.end;
         let is = last_run(&after.events).map_or(start, |run| run.end);
-        if are_close(&was, &is, POSITION_TOLERANCE) || last + 1 == simulation.events.len() {
+        let next = simulation.events.get(last + 1);
+        if are_close(&was, &is, POSITION_TOLERANCE) || next.is_none_or(is_elsewhere) {
             return Some((first..=last, after, rest));
         }
         last = next_run(simulation, last);

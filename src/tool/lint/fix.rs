@@ -3,14 +3,13 @@
 use super::engine::{Examined, Report, cycles, examine, lint};
 use super::evaluate::Cycle;
 use super::job::Job;
-use super::process::{Kept, same_process};
+use super::offer::{Places, ROUNDING};
+use super::process::{Kept, same_order, same_process};
 use super::rule::{Applicability, Family, Finding};
 use crate::rapid::syntax;
-use crate::rapid::text::{Edit, FileId, SourceFile};
+use crate::rapid::text::{Edit, SourceFile};
 
 const MAX_ROUNDS: usize = 40;
-/// Rounding of an energy, J.
-const ROUNDING: f64 = 1e-6;
 
 /// The result of fixing.
 #[derive(Debug)]
@@ -79,19 +78,8 @@ fn candidates(report: &Report, most: Applicability) -> Vec<&Finding> {
     let mut list: Vec<&Finding> = report.findings.iter().filter(simulated).collect();
     let joules = |finding: &Finding| finding.saving.map_or(0.0, |saving| saving.energy_j);
     list.sort_by(|a, b| joules(b).total_cmp(&joules(a)));
-    let mut taken: Vec<(FileId, u32, u32)> = Vec::new();
-    list.retain(|finding| {
-        let mut places = vec![(finding.span.file, finding.span.start, finding.span.end)];
-        let edits = finding.fix.iter().flat_map(|fix| &fix.edits);
-        places.extend(edits.map(|edit| (edit.span.file, edit.span.start, edit.span.end)));
-        let free = places.iter().all(|(file, start, end)| {
-            !taken.iter().any(|(f, s, e)| f == file && start < e && s < end)
-        });
-        if free {
-            taken.extend(places);
-        }
-        free
-    });
+    let mut taken = Places::default();
+    list.retain(|finding| taken.take(finding));
     list
 }
 
@@ -129,7 +117,8 @@ fn attempt(
             (Some(before), Some(after)) => {
                 let spared = before.account.total.energy_j() - after.account.total.energy_j();
                 let is_same = job.model.is_some_and(|model| {
-                    same_process(model, &before.simulation, &after.simulation, Kept::Waits)
+                    same_order(&before.simulation, &after.simulation)
+                        && same_process(model, &before.simulation, &after.simulation, Kept::Waits)
                 });
                 if spared < -ROUNDING || !is_same {
                     return None;

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::data_names::DataNames;
-use super::statements::called_instruction;
+use super::statements::{called_instruction, called_name};
 use crate::rapid::builtins::{self, Instruction};
 use crate::rapid::ir::graph::{Graph, NodeId, Step, When};
 use crate::rapid::ir::hir::{Call, Callee, Stmt, StmtKind};
@@ -45,6 +45,17 @@ pub enum Class {
     Wait,
     /// It may require standstill.
     Other,
+}
+
+/// What a setting is in force for.
+#[derive(Clone, Debug, Default)]
+pub struct InForce {
+    /// The movements.
+    pub movements: BTreeSet<Place>,
+    /// The calls that end it.
+    pub ends: BTreeSet<Place>,
+    /// Whether the program can end before.
+    pub runs_out: bool,
 }
 
 /// Statements that a search passes.
@@ -214,6 +225,72 @@ impl<'p> Flow<'p> {
                         self.push_next(place, &mut open);
                     }
                     found.extend(next);
+                }
+            }
+        }
+        found
+    }
+
+    /// The movements that a statement is in force for, and the statements that end it: it is a call of
+    /// the instruction `key`, and each further call of that instruction ends it.
+    pub fn in_force(&self, from: Place, key: &str) -> InForce {
+        let mut found = InForce::default();
+        let mut seen = BTreeSet::new();
+        let mut open: Vec<Place> = Vec::new();
+        self.push_next(from, &mut open);
+        while let Some(place) = open.pop() {
+            if !seen.insert(place) {
+                continue;
+            }
+            let (routine, node) = place;
+            let stmt = match self.graph(routine).nodes[node].step {
+                Step::Statement(stmt) => stmt,
+                Step::Exit => {
+                    let mut ends = BTreeSet::new();
+                    self.leave(routine, &mut open, &mut ends);
+                    found.runs_out |= !ends.is_empty();
+                    continue;
+                }
+                _ => {
+                    self.push_next(place, &mut open);
+                    continue;
+                }
+            };
+            if called_name(stmt).is_some_and(|name| name.key == key) {
+                found.ends.insert(place);
+                continue;
+            }
+            match self.class(routine, stmt) {
+                Class::Call(callee) => {
+                    open.push((callee, 0));
+                    continue;
+                }
+                Class::Move => {
+                    found.movements.insert(place);
+                }
+                _ => {}
+            }
+            self.push_next(place, &mut open);
+        }
+        found
+    }
+
+    /// Routines that some routines and their interrupts reach.
+    pub fn running(&self, from: impl IntoIterator<Item = RoutineId>) -> BTreeSet<RoutineId> {
+        let mut found = BTreeSet::new();
+        let mut open: Vec<RoutineId> = from.into_iter().collect();
+        while let Some(id) = open.pop() {
+            if !found.insert(id) {
+                continue;
+            }
+            for stmt in self.statements_of(id) {
+                if let Class::Call(callee) = self.class(id, stmt) {
+                    open.push(callee);
+                }
+                if let StmtKind::Connect { trap, .. } = &stmt.kind
+                    && let Some(Symbol::Routine(trap)) = self.program.resolve(id.module, &trap.key)
+                {
+                    open.push(trap);
                 }
             }
         }

@@ -6,18 +6,27 @@
 //! the part of the cycle around it again.
 
 pub mod context;
+mod coverage;
 mod data_names;
 mod edits;
 pub mod engine;
+mod entries;
 pub mod evaluate;
 pub mod fix;
 pub mod flow;
 pub mod group;
 pub mod job;
+mod offer;
+mod outputs;
+mod parsed;
 pub mod process;
+mod purpose;
+pub mod ranking;
+mod regions;
 mod register;
 pub mod rule;
 mod rules;
+mod runs;
 pub mod saving;
 pub mod settings;
 pub mod site;
@@ -27,13 +36,14 @@ pub mod suppress;
 pub mod system;
 pub mod trace;
 mod words;
+mod work;
 
 pub use engine::{Report, lint};
 pub use fix::{Fixed, fix};
 pub use group::Group;
 pub use job::{Job, Programs};
 pub use register::{ALL, find};
-pub use rule::{Applicability, Family, Finding, Fix, Needs, Rule};
+pub use rule::{Applicability, Confidence, Family, Finding, Fix, Needs, Rule};
 pub use saving::Saving;
 pub use settings::Settings;
 pub use system::System;

@@ -4,6 +4,7 @@ use super::evaluate::POSITION_TOLERANCE;
 use super::trace::{self, Action};
 use crate::arm::kinematics::fk;
 use crate::arm::robot::Model;
+use crate::rapid::ir::movement::Target;
 use crate::retime::motion::Simulation;
 use crate::retime::motion::timeline::{Event, What};
 use crate::retime::path::joint_path::{Joints, are_close};
@@ -41,6 +42,40 @@ pub fn same_process(model: &Model, before: &Simulation, after: &Simulation, kept
         && a.len() == b.len()
         && a.iter().zip(&b).all(near)
         && problems(&after.events) <= problems(&before.events)
+}
+
+/// Whether two simulations have the same targets, waits and outputs in the same order; a target that
+/// follows itself counts once.
+pub fn same_order(before: &Simulation, after: &Simulation) -> bool {
+    ordered(&before.events) == ordered(&after.events)
+}
+
+/// What a simulation does, in order.
+fn ordered(events: &[Event]) -> Vec<Done> {
+    let done = trace::of_events(events);
+    let mut all: Vec<Done> = done
+        .iter()
+        .filter_map(|it| {
+            Some(match &it.what {
+                // The configuration is the robot's way, not the place of the tool.
+                Action::Move(movement) => Done::Moved(match &movement.target {
+                    Target::Joints(joints) => format!("{joints:?}"),
+                    Target::Pose(target) => format!("{:?} {:?}", target.pose, movement.wobj),
+                }),
+                what => Done::Acted(action(what)?),
+            })
+        })
+        .collect();
+    all.dedup_by(|a, b| a == b && matches!(a, Done::Moved(_)));
+    all
+}
+
+#[derive(PartialEq)]
+enum Done {
+    /// It moved to a target.
+    Moved(String),
+    /// It waited or set an output.
+    Acted(String),
 }
 
 fn is_same_place(model: &Model, a: &Joints, b: &Joints) -> bool {

@@ -4,21 +4,25 @@ use super::rule::Rule;
 use super::rules as r;
 
 /// All rules, ordered by code.
-pub static ALL: [&Rule; 35] = [
+pub static ALL: [&Rule; 39] = [
     &r::unused_suppression::RULE,
     &r::unneeded_stop_point::RULE,
     &r::stop_in_line::RULE,
     &r::tiny_zone::RULE,
     &r::stop_for_output::RULE,
+    &r::grip_in_passing::RULE,
     &r::racing_to_wait::RULE,
     &r::unreached_speed::RULE,
     &r::accelerated_to_wait::RULE,
     &r::reorientation_limited_line::RULE,
     &r::line_in_free_air::RULE,
+    &r::slow_travel::RULE,
     &r::dwell_at_heavy_pose::RULE,
     &r::micro_move_in_dwell::RULE,
     &r::polling_wait::RULE,
     &r::slack_before_wait::RULE,
+    &r::fixed_wait::RULE,
+    &r::busy_loop::RULE,
     &r::move_to_same_place::RULE,
     &r::there_and_back::RULE,
     &r::detour::RULE,

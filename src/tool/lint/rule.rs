@@ -130,6 +130,49 @@ pub struct Finding {
     pub fix: Option<Fix>,
     /// Related places.
     pub related: Vec<(Span, String)>,
+    /// By the joules and the confidence; before they are known that of the rule.
+    pub severity: Severity,
+    /// How sure the rule is.
+    pub confidence: Confidence,
+    /// Energy in a cycle of what the change shortens by an unknown part, J: no saving, but its limit.
+    pub at_stake_j: Option<f64>,
+    /// Number of places that it stands for.
+    pub count: usize,
+    /// The cycle that it belongs to, if it is simulated with energies.
+    pub cycle: Option<CycleFigures>,
+}
+
+/// What a cycle takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CycleFigures {
+    /// J.
+    pub energy_j: f64,
+    /// s.
+    pub time_s: f64,
+}
+
+/// Most further places that a finding for several places shows: enough to see what they have in
+/// common.
+pub(super) const MAX_RELATED: usize = 3;
+
+/// How sure a rule is that a finding is waste.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Confidence {
+    /// Only who knows the cell can tell waste from a need of the process.
+    Low,
+    /// Waste, unless the cell has a reason that no program shows.
+    Usual,
+}
+
+impl Confidence {
+    /// Its name in outputs.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Confidence::Low => "low",
+            Confidence::Usual => "usual",
+        }
+    }
 }
 
 impl Finding {
@@ -144,7 +187,30 @@ impl Finding {
             assumptions: Vec::new(),
             fix: None,
             related: Vec::new(),
+            severity: rule.severity,
+            confidence: Confidence::Usual,
+            at_stake_j: None,
+            count: 1,
+            cycle: None,
         }
+    }
+
+    /// The finding as one of which the rule is not sure.
+    #[must_use]
+    pub fn doubtful(self) -> Finding {
+        Finding { confidence: Confidence::Low, ..self }
+    }
+
+    /// The finding as one for several places.
+    #[must_use]
+    pub fn for_places(self, count: usize) -> Finding {
+        Finding { count, ..self }
+    }
+
+    /// The finding with the energy in a cycle of what the change shortens, J.
+    #[must_use]
+    pub fn with_at_stake(self, joules: Option<f64>) -> Finding {
+        Finding { at_stake_j: joules, ..self }
     }
 
     /// The finding with a change in words, and its saving if that is known.

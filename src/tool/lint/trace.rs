@@ -125,6 +125,13 @@ pub fn record(program: &Program, entry: RoutineId) -> Recording {
 }
 
 impl Recording {
+    /// Appends another recording, with an unknown way between them.
+    pub fn append(&mut self, start: Span, other: Recording) {
+        self.steps.push(Recorded::Left(start));
+        self.steps.extend(other.steps);
+        self.notes.extend(other.notes);
+    }
+
     /// The trace.
     pub fn trace(&self) -> Vec<TraceStep<'_>> {
         let done = |step| {

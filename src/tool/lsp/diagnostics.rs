@@ -74,7 +74,7 @@ fn of_fault(view: View<'_>, client: &Client, fault: &diagnostics::Diagnostic) ->
 pub(super) fn of_finding(finding: &Finding, positions: Positions<'_>) -> Diagnostic {
     Diagnostic {
         range: positions.range(finding.span),
-        severity: Some(severity(finding.rule.severity)),
+        severity: Some(severity(finding.severity)),
         code: Some(Code::String(finding.rule.code.to_owned())),
         source: Some(SOURCE.to_owned()),
         message: finding.full_message().into(),

@@ -48,7 +48,7 @@ const ROUNDING: f64 = 1e-6;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     for (index, site) in context.sites.iter().enumerate() {
-        if !site.is_plain() || !site.is_stop() || site.compact {
+        if !site.is_plain() || !site.is_stop() || site.compact || context.is_process(index) {
             continue;
         }
         let Some((signal, slack)) = waits_behind(context, index) else { continue };

@@ -37,18 +37,17 @@
 use std::collections::BTreeSet;
 
 use super::super::context::Context;
-use super::super::flow::Class;
 use super::super::rule::Finding;
 use super::super::statements::called_instruction;
 use crate::rapid::builtins::{Instruction, MoveForm};
-use crate::rapid::ir::hir::{RoutineKind, Scope, StmtKind};
-use crate::rapid::ir::program::{RoutineId, Symbol};
+use crate::rapid::ir::hir::{RoutineKind, Scope};
+use crate::rapid::ir::program::RoutineId;
 
 rule!("EW702", "dead-procedure", Program, Text, Info, "dead_procedure.rs");
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     let Some(entry) = context.entry.filter(|_| !context.flow.has_late_calls()) else { return };
-    let running = running(context, entry);
+    let running = context.flow.running([entry]);
     let moving: BTreeSet<RoutineId> = context.sites.iter().map(|site| site.place.0).collect();
     if moving.is_disjoint(&running) {
         return;
@@ -71,30 +70,8 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     }
 }
 
-/// Routines that the program or an interrupt reaches.
-fn running(context: &Context<'_>, entry: RoutineId) -> BTreeSet<RoutineId> {
-    let mut found = BTreeSet::new();
-    let mut open = vec![entry];
-    while let Some(id) = open.pop() {
-        if !found.insert(id) {
-            continue;
-        }
-        for stmt in context.flow.statements_of(id) {
-            if let Class::Call(callee) = context.flow.class(id, stmt) {
-                open.push(callee);
-            }
-            if let StmtKind::Connect { trap, .. } = &stmt.kind
-                && let Some(Symbol::Routine(trap)) = context.program.resolve(id.module, &trap.key)
-            {
-                open.push(trap);
-            }
-        }
-    }
-    found
-}
-
 /// Whether something outside of the files is called: it may call any routine.
-fn calls_others(context: &Context<'_>) -> bool {
+pub(super) fn calls_others(context: &Context<'_>) -> bool {
     let mut statements = context.flow.statements();
     statements.any(|(place, stmt, _)| context.flow.loses_position(place.0, stmt))
 }

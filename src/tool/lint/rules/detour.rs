@@ -30,7 +30,8 @@
 //!
 //! ## Assumptions
 //! Joint movements alone have no purpose, unless the procedure does nothing else, or hardly anything
-//! else.
+//! else. Loops with a movement next to work, in a process, below 500 mm/s or of less than 150 mm (an
+//! edge that is deburred) are left alone. The confidence is low.
 
 use super::super::context::Context;
 use super::super::rule::Finding;
@@ -42,6 +43,10 @@ rule!("EW403", "detour", Path, Text, Info, "detour.rs");
 
 /// Points of a loop.
 const MAX_POINTS: usize = 6;
+/// Slower movements are taken for a process, m/s: as in EW402.
+const MIN_SPEED: f64 = 0.5;
+/// Shorter ways may follow a contour, m: as in EW101.
+const MIN_STEP: f64 = 0.15;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     for first in 0..context.sites.len() {
@@ -72,11 +77,26 @@ fn needless_loop(context: &Context<'_>, chain: &[usize], last: usize) -> Option<
     if chain.iter().any(|site| context.sites[*site].facts.goal.is_none()) {
         return None;
     }
+    // Without the chain, the last movement goes the way of the first one.
+    let form = |site: usize| context.sites[site].signature.form;
+    let touches_work = |site: &usize| context.is_next_to_work(*site) || is_at_work(context, *site);
+    if form(chain[0]) != form(last) || chain.iter().any(touches_work) || is_at_work(context, last) {
+        return None;
+    }
     let points = chain.len() - 1;
     let message = format!("a loop over {points} points leads back to where it began, for nothing");
     let change = format!("leaving out the {} movements before this one", chain.len());
     let finding = Finding::new(&RULE, context.sites[last].stmt.span, message)
         .with_related(spans[0], "it begins here")
-        .with_saving(change, saving);
+        .with_saving(change, saving)
+        .doubtful();
     Some(finding)
+}
+
+/// Whether a movement of a loop may do the work itself: it is slow, a process runs, or it is so short
+/// that the loop goes round a part, as where an edge is deburred.
+fn is_at_work(context: &Context<'_>, site: usize) -> bool {
+    let is_slow = context.sites[site].facts.speed.is_none_or(|it| it.tcp < MIN_SPEED);
+    let is_short = context.corner(site).is_none_or(|it| it.room() < MIN_STEP);
+    is_slow || is_short || context.is_in_process(site)
 }

@@ -59,6 +59,8 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         let before = context.before(index);
         if site.signature.form != MoveForm::Linear
             || !passes(index)
+            || context.is_next_to_work(index)
+            || context.is_in_process(index)
             || !fast
             || before.is_empty()
             || context.is_unknown_before(index)

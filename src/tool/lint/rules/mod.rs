@@ -17,12 +17,15 @@ macro_rules! rule {
 
 pub(super) mod accelerated_to_wait;
 pub(super) mod brakes_never_close;
+pub(super) mod busy_loop;
 pub(super) mod conf_off_jump;
 pub(super) mod dead_procedure;
 pub(super) mod detour;
 pub(super) mod duplicated_target;
 pub(super) mod dwell_at_heavy_pose;
 pub(super) mod energy_signal_unused;
+pub(super) mod fixed_wait;
+pub(super) mod grip_in_passing;
 pub(super) mod gripping_without_payload;
 pub(super) mod line_in_free_air;
 pub(super) mod long_way_round;
@@ -38,6 +41,7 @@ pub(super) mod racing_to_wait;
 pub(super) mod reorientation_limited_line;
 pub(super) mod setting_never_restored;
 pub(super) mod slack_before_wait;
+pub(super) mod slow_travel;
 pub(super) mod stop_for_output;
 pub(super) mod stop_in_line;
 pub(super) mod target_out_of_reach;

@@ -2,7 +2,8 @@
 //!
 //! ## What it does
 //! Finds movements whose goal is, on every way through the program, the goal of the movement
-//! before, with the same tool and work object.
+//! before, with the same tool and work object. Statements of a file that repeat the one before word for
+//! word are one finding with their number: what wrote them is the cause.
 //!
 //! ## Why it wastes energy
 //! It moves nothing, but the controller plans it, waits for its stop point, and ends what would
@@ -27,39 +28,76 @@
 //! Unsafe: somebody may start the program here by hand, with the robot elsewhere.
 //!
 //! ## Assumptions
-//! Only what the program does moves the robot.
+//! Only what the program does moves the robot, unless it stops or asks the operator, who may then move
+//! it by hand. Movements next to work (an output, a wait, another tool or load) are left alone.
+
+use std::collections::BTreeMap;
 
 use super::super::context::Context;
 use super::super::edits::remove;
-use super::super::rule::Finding;
+use super::super::rule::{Finding, MAX_RELATED};
 use crate::rapid::ir::hir::{Expr, ExprKind};
 use crate::rapid::ir::program::Symbol;
+use crate::rapid::text::{Edit, FileId, Span};
 
 rule!("EW401", "move-to-same-place", Path, Text, Info, "move_to_same_place.rs");
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
+    // Statements that repeat the one before word for word have one cause: what wrote them.
+    let mut repeated: BTreeMap<FileId, Vec<usize>> = BTreeMap::new();
     for (index, site) in context.sites.iter().enumerate() {
         let before = context.before(index);
         if before.is_empty() || context.is_unknown_before(index) || before.contains(&index) {
             continue;
         }
-        if !before.iter().all(|before| same_goal(context, *before, index)) {
+        if context.is_next_to_work(index)
+            || !before.iter().all(|before| same_goal(context, *before, index))
+        {
             continue;
         }
         // After a fly-by point this movement makes the robot stop: that has a purpose.
         if site.is_stop() && before.iter().any(|before| !context.sites[*before].is_stop()) {
             continue;
         }
-        let message = format!("{} goes where the robot already is", site.name);
-        let mut finding = Finding::new(&RULE, site.stmt.span, message);
-        for before in before {
-            finding = finding.with_related(context.sites[*before].stmt.span, "it got there here");
+        let text = |site: usize| {
+            let text = context.text(context.sites[site].stmt.span).to_lowercase();
+            text.split_whitespace().collect::<String>()
+        };
+        if before.iter().all(|before| text(*before) == text(index)) {
+            repeated.entry(site.stmt.span.file).or_default().push(index);
+        } else {
+            findings.push(same_place(context, &[index]));
         }
-        if let Ok(Some(saving)) = context.evaluate(&[site.stmt.span], &|_| Vec::new()) {
-            finding = finding.with_saving("leaving it out", saving);
-        }
-        findings.push(finding.with_unsafe_fix(remove(context, site)));
     }
+    findings.extend(repeated.into_values().map(|sites| same_place(context, &sites)));
+}
+
+/// A finding at the first of some movements, for all of them.
+fn same_place(context: &Context<'_>, sites: &[usize]) -> Finding {
+    let spans: Vec<Span> = sites.iter().map(|site| context.sites[*site].stmt.span).collect();
+    let site = &context.sites[sites[0]];
+    let (what, change) = match sites.len() {
+        1 => (String::new(), "leaving it out".to_owned()),
+        count => {
+            let others = count - 1;
+            let what = format!(", and so do {others} others that repeat the statement before");
+            (what, format!("leaving out all {count}"))
+        }
+    };
+    let message = format!("{} goes where the robot already is{what}", site.name);
+    let mut finding = Finding::new(&RULE, spans[0], message).for_places(sites.len());
+    for before in context.before(sites[0]) {
+        finding = finding.with_related(context.sites[*before].stmt.span, "it got there here");
+    }
+    for span in spans.iter().skip(1).take(MAX_RELATED) {
+        finding = finding.with_related(*span, "and here");
+    }
+    if let Ok(Some(saving)) = context.evaluate(&spans, &|_| Vec::new()) {
+        finding = finding.with_saving(change, saving);
+    }
+    let edits: Option<Vec<Edit>> =
+        sites.iter().map(|site| remove(context, &context.sites[*site])).collect();
+    finding.with_unsafe_fix(edits.unwrap_or_default())
 }
 
 /// Whether two plain movements go to the same place with the same tool and work object.

@@ -2,7 +2,9 @@
 //!
 //! ## What it does
 //! Finds movements to the place at which the program starts, between two other movements, where
-//! nothing is done at home, no wait and no output, but something before it and something behind it.
+//! nothing is done at home, no wait and no output, but something before it and something behind it. The
+//! movement before and the two behind it are next to no work either: where home is the lift behind a grip
+//! or the approach to the next one, nothing is told.
 //! Where a procedure that does nothing else goes home, each call of it is looked at by itself. Without
 //! a robot at least two of them in a cycle are needed.
 //!
@@ -14,15 +16,17 @@
 //!
 //! ## Example
 //! ```text
-//! MoveJ pOverPick, v1000, z50, tGrip;
+//! MoveL pOverPick, v1000, z50, tGrip;
 //! MoveAbsJ jHome, v1000, fine, tGrip;
 //! MoveJ pOverPlace, v1000, z50, tGrip;
+//! MoveL pPlace, v300, fine, tGrip;
 //! ```
 //!
 //! ## Use instead
 //! ```text
-//! MoveJ pOverPick, v1000, z50, tGrip;
+//! MoveL pOverPick, v1000, z50, tGrip;
 //! MoveJ pOverPlace, v1000, z50, tGrip;
+//! MoveL pPlace, v300, fine, tGrip;
 //! ```
 //!
 //! ## Safety
@@ -31,9 +35,11 @@
 //!
 //! ## Assumptions
 //! Home is where the first movement of the program goes, if that is a `MoveAbsJ`, or a pose at which
-//! the program also ends and the robot stops.
+//! the program also ends and the robot stops; joints and poses are compared. The confidence is low.
 
 use super::super::context::Context;
+use super::super::evaluate::POSITION_TOLERANCE;
+use super::super::flow::{Next, Through};
 use super::super::rule::Finding;
 use super::super::saving::Evaluation;
 use super::super::site::{Goal, Site, facts_of};
@@ -43,6 +49,7 @@ use crate::rapid::ir::graph::Step as GraphStep;
 use crate::rapid::ir::hir::{Ident, Stmt, StmtKind};
 use crate::rapid::text::Span;
 use crate::retime::motion::Step;
+use crate::retime::path::joint_path::{Joints, are_close};
 
 rule!("EW406", "needless-home-run", Path, Text, Info, "needless_home_run.rs");
 
@@ -53,19 +60,29 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     let is_move = |step: usize| context.trace[step].what.movement().is_some();
     let moves: Vec<usize> = (0..context.trace.len()).filter(|step| is_move(*step)).collect();
     let Some(home) = moves.first().and_then(|step| goal(context, *step)) else { return };
-    let is_home = |step: usize| goal(context, step).is_some_and(|goal| goal.is_same(&home));
+    // The same place may be written as joints and as a pose.
+    let first = moves[0];
+    let is_home = |step: usize| {
+        goal(context, step).is_some_and(|goal| goal.is_same(&home))
+            || joints(context, step)
+                .zip(joints(context, first))
+                .is_some_and(|(a, b)| are_close(&a, &b, POSITION_TOLERANCE))
+    };
     // A program that begins at a pose begins at home if it ends there too.
     if home.pose().is_some() && !moves.last().is_some_and(|step| is_home(*step)) {
         return;
     }
     // Nothing is done at home, and the movements before and after it lead elsewhere.
+    // Without it the way into or out of work stays: it is neither a lift nor an approach.
+    let moves_at = |step: usize| step < context.trace.len() && is_move(step);
     let passes = |step: usize| {
-        let before = context.trace[..step].iter().rposition(|done| done.what.moves());
         is_home(step)
-            && before.is_some_and(|before| is_move(before) && !is_home(before))
-            && step + 1 < context.trace.len()
-            && is_move(step + 1)
+            && step > 0
+            && moves_at(step - 1)
+            && !is_home(step - 1)
+            && moves_at(step + 1)
             && !is_home(step + 1)
+            && moves_at(step + 2)
     };
     // Without work between two visits home is only a point of a path.
     let homes: Vec<usize> = moves.iter().copied().filter(|step| is_home(*step)).collect();
@@ -82,7 +99,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         passes(step) && works_between(before, step) && works_between(step, after)
     };
     let visits = moves.iter().filter(|step| idle(**step)).count();
-    for site in &context.sites {
+    for (index, site) in context.sites.iter().enumerate() {
         // A pose that is passed is a point on the way.
         let joint = match site.signature.form {
             MoveForm::AbsJ => true,
@@ -92,7 +109,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         if !joint || !site.is_plain() || site.executions.is_empty() {
             continue;
         }
-        if site.executions.iter().all(|step| idle(*step)) {
+        if site.executions.iter().all(|step| idle(*step)) && context.may_leave_out(index) {
             let saving = context.evaluate(&[site.stmt.span], &|_| Vec::new());
             findings.extend(needless(site.stmt.span, site.name, saving, visits));
         } else if does_nothing_else(context, site) {
@@ -109,7 +126,8 @@ fn needless(span: Span, name: &str, saving: Evaluation, visits: usize) -> Option
     let message = format!("{name} goes home on the way to other work, for nothing");
     let finding = Finding::new(&RULE, span, message)
         .with_saving("leaving it out", saving)
-        .with_assumption("the direct way is free");
+        .with_assumption("the direct way is free")
+        .doubtful();
     Some(finding)
 }
 
@@ -123,6 +141,10 @@ fn idle_calls<'c>(
     let calls = context.flow.callers(site.place.0).iter().filter_map(|place| {
         let stmt = context.flow.statement(*place)?;
         let name = called_name(stmt)?;
+        let next = context.flow.following(*place, Through::NoEffect);
+        if !next.iter().all(|next| matches!(next, Next::Move(_))) {
+            return None;
+        }
         let mut visits = site.executions.iter().filter(|step| called_at(**step) == Some(name.span));
         let some = visits.clone().next().is_some();
         (some && visits.all(|step| idle(*step))).then_some((stmt, name))
@@ -149,6 +171,12 @@ fn without(step: &Step, call: Span) -> Vec<Step> {
         Step::Move(movement) if movement.called_at == Some(call) => Vec::new(),
         other => vec![other.clone()],
     }
+}
+
+/// The simulated joints at the end of a movement that stops.
+fn joints(context: &Context<'_>, step: usize) -> Option<Joints> {
+    let (_, record, leg) = context.record(step)?;
+    record.movement.zone.fine.then_some(leg.end)
 }
 
 fn goal(context: &Context<'_>, step: usize) -> Option<Goal> {

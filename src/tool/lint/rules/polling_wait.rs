@@ -30,24 +30,32 @@
 //! Without a fix: the condition may ask for more than one input.
 //!
 //! ## Assumptions
-//! A name that nothing declares is an input.
+//! A name that nothing declares and that is compared with 0, 1, high or low is an input. Programs that
+//! move no robot are left alone: a task that watches others has its flags.
 
 use super::super::context::Context;
 use super::super::flow::Class;
 use super::super::rule::Finding;
 use super::super::statements::called_name;
-use crate::rapid::ir::hir::{Block, Expr, Routine, Stmt, StmtKind};
+use crate::rapid::ir::hir::{Block, Expr, ExprKind, Routine, Stmt, StmtKind};
 use crate::rapid::ir::program::RoutineId;
 
 rule!("EW303", "polling-wait", Dwell, Text, Info, "polling_wait.rs");
 
+/// Functions that read an input.
+const READING: [&str; 4] = ["dinput", "testdi", "ginput", "ainput"];
+
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
+    if context.sites.is_empty() {
+        return;
+    }
     for (routine, body) in context.program.routines() {
         for block in all_blocks(body) {
             for (index, stmt) in block.iter().enumerate() {
                 let before = index.checked_sub(1).map(|before| &block[before]);
                 let Some((condition, body)) = polling_loop(stmt, before) else { continue };
-                if !context.flow.data_names.has_only_data(routine, condition)
+                if asks_outside(condition)
+                    && !context.flow.data_names.has_only_data(routine, condition)
                     && only_waits(context, routine, body)
                 {
                     let message = "a loop polls with WaitTime: WaitDI or WaitUntil wait for the \
@@ -60,7 +68,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
 }
 
 /// The statement lists of a routine, those inside of statements too.
-fn all_blocks(routine: &Routine) -> Vec<&Block> {
+pub(super) fn all_blocks(routine: &Routine) -> Vec<&Block> {
     let mut blocks: Vec<&Block> = routine.blocks().collect();
     let mut next = 0;
     while let Some(block) = blocks.get(next).copied() {
@@ -71,7 +79,10 @@ fn all_blocks(routine: &Routine) -> Vec<&Block> {
 }
 
 /// The condition and the statements of a loop, also of one that is made with a jump.
-fn polling_loop<'h>(stmt: &'h Stmt, before: Option<&'h Stmt>) -> Option<(&'h Expr, &'h [Stmt])> {
+pub(super) fn polling_loop<'h>(
+    stmt: &'h Stmt,
+    before: Option<&'h Stmt>,
+) -> Option<(&'h Expr, &'h [Stmt])> {
     match &stmt.kind {
         StmtKind::While { condition, body } => Some((condition, body.as_slice())),
         StmtKind::If { branches, otherwise: None } => jump_back(branches, before),
@@ -92,6 +103,31 @@ fn jump_back<'h>(
     match &last.kind {
         StmtKind::Goto(to) if to.key == label.key => Some((condition, rest)),
         _ => None,
+    }
+}
+
+/// Whether a condition has the form of a question for an input: a level of a signal, or a function that
+/// reads one. What is true or false by itself is a flag.
+pub(super) fn asks_outside(condition: &Expr) -> bool {
+    match &condition.kind {
+        ExprKind::Call(name, _) => READING.contains(&name.key.as_str()),
+        ExprKind::Binary(_, left, right) => {
+            let is_name = |side: &Expr| matches!(side.kind, ExprKind::Ref(_));
+            let compares = |a: &Expr, b: &Expr| is_name(a) && is_level(b);
+            compares(left, right)
+                || compares(right, left)
+                || asks_outside(left)
+                || asks_outside(right)
+        }
+        _ => condition.parts().into_iter().any(asks_outside),
+    }
+}
+
+fn is_level(expr: &Expr) -> bool {
+    match &expr.kind {
+        ExprKind::Num(level) => *level == 0.0 || *level == 1.0,
+        ExprKind::Ref(name) => ["high", "low"].contains(&name.key.as_str()),
+        _ => false,
     }
 }
 

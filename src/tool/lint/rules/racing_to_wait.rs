@@ -34,6 +34,7 @@
 use super::super::context::Context;
 use super::super::edits::{replace, slower, with_speed};
 use super::super::flow::{Next, Through};
+use super::super::purpose::PROCESS_SPEED;
 use super::super::rule::Finding;
 use super::super::saving::Saving;
 use super::super::site::Site;
@@ -105,7 +106,8 @@ pub(super) fn slower_run(
 ) -> Option<Finding> {
     let run = run_of(context, index)?;
     let sites: Vec<_> = run.iter().map(|site| &context.sites[*site]).collect();
-    if sites.iter().any(|site| !site.is_plain()) {
+    if sites.iter().any(|site| !site.is_plain()) || run.iter().any(|it| context.is_in_process(*it))
+    {
         return None;
     }
     let spans: Vec<Span> = sites.iter().map(|site| site.stmt.span).collect();
@@ -113,7 +115,7 @@ pub(super) fn slower_run(
     let fastest = fastest.collect::<Option<Vec<f64>>>()?.into_iter().fold(0.0, f64::max);
     let times = context.sites[index].executions.len() as f64;
     let mut best: Option<(String, f64, Saving)> = None;
-    for (name, speed) in slower(fastest) {
+    for (name, speed) in slower(fastest).take_while(|(_, speed)| *speed >= PROCESS_SPEED) {
         let difference = context.difference(&spans, &|step| with_speed(step, speed))?;
         if difference.longer_s > slack * times {
             break;

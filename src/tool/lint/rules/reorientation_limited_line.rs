@@ -1,16 +1,15 @@
 //! A line is so short for its turn that the turning of the tool sets the pace.
 //!
 //! ## What it does
-//! Finds lines and arcs on which turning the tool at the programmed rate takes at least twice as
-//! long as the way of the TCP does.
+//! Finds lines on which, in the simulation, the turning speed of the speed data is the limit for the
+//! longest time, below the 500 °/s of the predefined speeds.
 //!
 //! ## Why it wastes energy
 //! The programmed speed is not reached, the wrist runs at its limit while the large axes crawl,
 //! and the base load runs on.
 //!
 //! ## How the saving is computed
-//! The movement is laid on a time line with the turning speed that it has and with 500 °/s, that of
-//! the predefined speeds. Where it already has that, there is no finding.
+//! The movement is laid on a time line with the turning speed that it has and with 500 °/s.
 //!
 //! ## Example
 //! ```text
@@ -26,56 +25,40 @@
 //! Without a fix: only the process knows where the tool may turn.
 //!
 //! ## Assumptions
-//! The rate of turning is that of the speed data.
+//! The simulated pace is that of the controller. Movements of a process (below 200 mm/s, or with an
+//! output on for lines alone) are left alone.
 
 use super::super::context::Context;
-use super::super::edits::change_movement;
+use super::super::edits::{PREDEFINED_TURN, change_movement};
 use super::super::rule::Finding;
+use super::super::saving::SavesNothing;
 use crate::rapid::builtins::MoveForm;
 use crate::retime::motion::Step;
+use crate::retime::motion::pace::Pace;
+use crate::retime::motion::timing::grid::SpeedBound;
 
-rule!("EW204", "reorientation-limited-line", Speed, Text, Info, "reorientation_limited_line.rs");
+rule!("EW204", "reorientation-limited-line", Speed, Robot, Info, "reorientation_limited_line.rs");
 
-/// Turning speed of the predefined speeds, rad/s: 500 °/s.
-const PREDEFINED: f64 = 8.726_646;
-/// Times that turning takes longer than the way.
-const MIN_RATIO: f64 = 2.0;
-/// Smallest turn that is reported, rad.
-const MIN_TURN: f64 = 0.5;
-/// Least time of turning that is reported, s.
-const MIN_TIME: f64 = 0.15;
 /// Shortest way of what is still a line and no turn on the spot, m.
 const MIN_WAY: f64 = 0.01;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     for (index, site) in context.sites.iter().enumerate() {
-        let goal = site.facts.goal.as_ref().and_then(|goal| goal.pose());
-        let (Some(speed), Some(to)) = (site.facts.speed, goal) else { continue };
-        let before = context.before(index);
-        let line = site.signature.form == MoveForm::Linear;
-        if !line || !site.is_plain() || before.is_empty() || context.is_unknown_before(index) {
+        let Some(speed) = site.facts.speed else { continue };
+        if site.signature.form != MoveForm::Linear
+            || !site.is_plain()
+            || site.executions.is_empty()
+            || context.is_process(index)
+            || !site.executions.iter().all(|step| is_paced_by_turn(context, *step))
+        {
             continue;
         }
-        let limited = before.iter().all(|before| {
-            let before = &context.sites[*before];
-            let same = before.wobj_key() == site.wobj_key() && before.tool_key() == site.tool_key();
-            let from = before.facts.goal.as_ref().and_then(|goal| goal.pose());
-            let Some(from) = from.filter(|_| same) else { return false };
-            let way = (to.translation.vector - from.translation.vector).norm();
-            let turn = from.rotation.angle_to(&to.rotation);
-            let turning = turn / speed.orientation;
-            way > MIN_WAY
-                && turn > MIN_TURN
-                && turning > MIN_TIME
-                && turning > MIN_RATIO * way / speed.tcp
-        });
-        if !limited {
-            continue;
-        }
-        let faster = |step: &Step| change_movement(step, |it| it.speed.orientation = PREDEFINED);
-        let slow = speed.orientation < PREDEFINED - 1e-3;
-        let evaluation = if slow { context.evaluate(&[site.stmt.span], &faster) } else { Ok(None) };
-        let Ok(saving) = evaluation else { continue };
+        let faster =
+            |step: &Step| change_movement(step, |it| it.speed.orientation = PREDEFINED_TURN);
+        let is_slow = speed.orientation < PREDEFINED_TURN - 1e-3;
+        let evaluation =
+            if is_slow { context.evaluate(&[site.stmt.span], &faster) } else { Err(SavesNothing) };
+        let Ok(Some(saving)) = evaluation else { continue };
         let message = format!(
             "the turn of the tool sets the pace of this {}: its {:.0} mm/s are not reached",
             site.name,
@@ -89,4 +72,13 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         );
         findings.push(Finding::new(&RULE, site.stmt.span, message).with_saving(change, saving));
     }
+}
+
+/// Whether the simulated turn of the tool limits an execution of a line for the longest time.
+fn is_paced_by_turn(context: &Context<'_>, step: usize) -> bool {
+    let Some((_, record, leg)) = context.record(step) else { return false };
+    let before = context.trace[..step].iter().rposition(|done| done.what.moves());
+    let from = before.and_then(|before| context.pose(before));
+    let way = from.map(|from| (leg.target.translation.vector - from.translation.vector).norm());
+    record.pace == Pace::Speed(SpeedBound::Reorientation) && way.is_some_and(|way| way > MIN_WAY)
 }

@@ -34,11 +34,9 @@
 //! The program is complete: it has its entry.
 
 use super::super::context::Context;
+use super::super::regions::percent;
 use super::super::rule::Finding;
-use super::super::statements::first_argument;
-use crate::rapid::ir::hir::Call;
 use crate::rapid::ir::movement::{Movement, Settings};
-use crate::rapid::ir::program::RoutineId;
 
 rule!("EW601", "setting-never-restored", Settings, Text, Warning, "setting_never_restored.rs");
 
@@ -69,9 +67,4 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             findings.push(Finding::new(&RULE, stmt.span, message));
         }
     }
-}
-
-/// The first argument of a call, if it is known.
-pub(super) fn percent(context: &Context<'_>, routine: RoutineId, call: &Call) -> Option<f64> {
-    context.constant(routine, first_argument(call)?)?.num()
 }

@@ -32,11 +32,12 @@
 //!
 //! ## Assumptions
 //! The process does not need a robot that stands. Points at which the tool turns back are taken
-//! for gripping and left alone.
+//! for gripping and left alone, and so are movements below 200 mm/s. The confidence is low.
 
 use super::super::context::Context;
 use super::super::edits::zone_within;
 use super::super::flow::{Next, Through};
+use super::super::purpose::PROCESS_SPEED;
 use super::super::rule::Finding;
 use super::super::stops::{are_plain, is_ordinary, propose_zone};
 
@@ -68,13 +69,14 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         );
         let finding = propose_zone(context, &RULE, index, zone, message);
         let assumption = "the process takes the signal while the robot moves";
-        findings.extend(finding.map(|finding| finding.with_assumption(assumption)));
+        findings.extend(finding.map(|finding| finding.with_assumption(assumption).doubtful()));
     }
 }
 
 fn stops_for_output(context: &Context<'_>, index: usize) -> bool {
     let site = &context.sites[index];
-    if !site.is_stop() || !is_ordinary(context, site) {
+    let slow = site.facts.speed.is_none_or(|speed| speed.tcp < PROCESS_SPEED);
+    if !site.is_stop() || !is_ordinary(context, site) || slow {
         return false;
     }
     let next = context.next(index, Through::NoEffect);

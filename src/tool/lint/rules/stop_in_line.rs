@@ -31,7 +31,8 @@
 //! Somebody has to say that nothing needs it.
 //!
 //! ## Assumptions
-//! Directions that differ by less than 0.3° are one line.
+//! Directions that differ by less than 0.3° are one line. Not looked at: movements next to work, and
+//! those of a process (below 200 mm/s, or with an output on for lines alone).
 
 use super::super::context::Context;
 use super::super::edits::zone_within;
@@ -47,6 +48,9 @@ const MAX_ZONE: f64 = 0.075;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     for (index, site) in context.sites.iter().enumerate() {
+        if context.is_next_to_work(index) || context.is_process(index) {
+            continue;
+        }
         let Some(next) = stops_for_movements(context, index) else { continue };
         let Some(corner) = context.corner(index) else { continue };
         if !is_in_line(context, index, &next, &corner) {

@@ -30,7 +30,8 @@
 //!
 //! ## Assumptions
 //! Movements alone have no purpose, unless the procedure does nothing else, or hardly anything else.
-//! Ways that are gone several times are left alone.
+//! Ways that are gone several times, and movements next to work or in a process, are left alone. The
+//! confidence is low.
 
 use super::super::context::Context;
 use super::super::flow::Through;
@@ -67,6 +68,12 @@ fn back_to(context: &Context<'_>, first: usize) -> Option<Finding> {
     if !idle(there) || !idle(back) || again || shaken || !process {
         return None;
     }
+    // Without both, the last movement goes the way of the first one.
+    let same_form = context.sites[first].signature.form == context.sites[back].signature.form;
+    let free = |site: usize| !context.is_next_to_work(site) && !context.is_in_process(site);
+    if !same_form || !free(first) || !free(there) {
+        return None;
+    }
     let [a, b, c] = [first, there, back].map(|site| &context.sites[site]);
     let saving = context.evaluate(&[a.stmt.span, b.stmt.span], &|_| Vec::new()).ok()?;
     if saving.is_some_and(|saving| saving.time_s < 0.0) {
@@ -76,7 +83,8 @@ fn back_to(context: &Context<'_>, first: usize) -> Option<Finding> {
     let finding = Finding::new(&RULE, b.stmt.span, message)
         .with_related(a.stmt.span, "from here")
         .with_related(c.stmt.span, "back again")
-        .with_saving("leaving out this movement and the one before", saving);
+        .with_saving("leaving out this movement and the one before", saving)
+        .doubtful();
     Some(finding)
 }
 

@@ -29,8 +29,8 @@
 //! Unsafe: the corner is cut further. Check that there is room.
 //!
 //! ## Assumptions
-//! Movements below 500 mm/s, corners between two lines and points at which the tool turns back
-//! are left alone.
+//! Movements below 500 mm/s, next to work or in a process, corners between two lines and points at
+//! which the tool turns back are left alone.
 
 use super::super::context::Context;
 use super::super::edits::zone_within;
@@ -63,7 +63,11 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
 fn larger_zone(context: &Context<'_>, index: usize) -> Option<Finding> {
     let site = &context.sites[index];
     let zone = site.facts.zone?;
-    if zone.fine || !is_ordinary(context, site) || site.facts.speed?.tcp < MIN_SPEED {
+    let touches_work = context.is_next_to_work(index) || context.is_in_process(index);
+    if zone.fine || touches_work || !is_ordinary(context, site) {
+        return None;
+    }
+    if site.facts.speed?.tcp < MIN_SPEED {
         return None;
     }
     let next = context.next_moves(index, Through::NoEffect)?;

@@ -1,8 +1,8 @@
 //! Parts are carried with tool0: the gripper has no mass.
 //!
 //! ## What it does
-//! Finds movements with `tool0` in programs that set a payload with `GripLoad`: something grips,
-//! so the flange is not bare.
+//! Finds movements with `tool0` that can follow a `GripLoad` with a mass before the next `GripLoad`:
+//! something grips, so the flange is not bare.
 //!
 //! ## Why it wastes energy
 //! The mass of the gripper is in neither the tool nor the payload: torques and energy are higher
@@ -28,12 +28,15 @@
 //!
 //! ## Assumptions
 //! A payload is gripped by something that has a mass. Joint movements go where they say whatever
-//! the tool is, but take its load: they count too.
+//! the tool is, but take its load: they count too. Movements without a part, as to a pose for
+//! transport, are left alone.
+
+use std::collections::BTreeSet;
 
 use super::super::context::Context;
 use super::super::rule::Finding;
-use crate::rapid::ir::hir::ArgKind;
-use crate::rapid::ir::value::Datum;
+use super::super::site::parts;
+use super::super::statements::first_argument;
 
 rule!("EW504", "tool0-while-gripping", Load, Text, Warning, "tool0_while_gripping.rs");
 
@@ -41,31 +44,27 @@ rule!("EW504", "tool0-while-gripping", Load, Text, Warning, "tool0_while_grippin
 const NONE: f64 = 0.01;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
-    let grips = context.calls("gripload").iter().any(|(place, _, call)| {
-        let Some(ArgKind::Positional(expr)) = call.args.first().map(|arg| &arg.kind) else {
-            return false;
-        };
-        match context.constant(place.0, expr) {
-            Some(Datum::List(parts)) => {
-                parts.first().and_then(Datum::num).is_some_and(|mass| mass > NONE)
-            }
-            _ => false,
+    let mut carrying = BTreeSet::new();
+    for (place, _, call) in context.calls("gripload") {
+        let load = first_argument(call).and_then(|load| context.constant(place.0, load));
+        let mass = load.as_ref().and_then(|load| parts(load)?.first()?.num());
+        if mass.is_some_and(|mass| mass > NONE) {
+            carrying.extend(context.flow.in_force(place, "gripload").movements);
         }
+    }
+    let bare = context.sites.iter().filter(|site| {
+        site.tool_key() == Some("tool0") && site.reachable && carrying.contains(&site.place)
     });
-    let bare: Vec<_> = context
-        .sites
-        .iter()
-        .filter(|site| site.tool_key() == Some("tool0") && site.reachable)
-        .collect();
-    let (true, Some(first)) = (grips, bare.first()) else { return };
+    let bare: Vec<_> = bare.collect();
+    let Some(first) = bare.first() else { return };
     let count = match bare.len() {
         1 => String::new(),
         count => format!(" (and in {} other movements)", count - 1),
     };
     let message = format!(
-        "parts are gripped, but {} moves with tool0{count}: the gripper's mass is in no figure",
+        "a part is gripped, but {} moves with tool0{count}: the gripper's mass is in no figure",
         first.name
     );
     let span = first.tool.map_or(first.stmt.span, |tool| tool.span);
-    findings.push(Finding::new(&RULE, span, message));
+    findings.push(Finding::new(&RULE, span, message).for_places(bare.len()));
 }

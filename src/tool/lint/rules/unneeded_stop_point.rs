@@ -31,10 +31,11 @@
 //! Check that there is room.
 //!
 //! ## Assumptions
-//! Not looked at: movements below 200 mm/s (a process may need the exact corner), points at which
-//! the tool turns back, points nearer than 20 mm to the next one, corners of contours (lines of less
-//! than 150 mm across the tool's axis, next to an arc, or four and more in a row) and their ends (the
-//! tool goes in, or comes out, next to a line across its axis), interrupt routines, first movements.
+//! Not looked at: movements next to work (an output, a wait, another tool or load), movements of a
+//! process (below 200 mm/s, or with an output on for lines alone), points at which the tool turns
+//! back, points nearer than 20 mm to the next one, corners of contours (lines of less than 150 mm
+//! across the tool's axis, next to an arc, or four and more in a row) and their ends (the tool goes
+//! in, or comes out, next to a line across its axis), interrupt routines, first movements.
 
 use std::collections::BTreeSet;
 
@@ -47,8 +48,6 @@ use crate::rapid::builtins::MoveForm;
 
 rule!("EW101", "unneeded-stop-point", Stops, Text, Warning, "unneeded_stop_point.rs");
 
-/// Slower movements are taken for a process, m/s.
-const MIN_SPEED: f64 = 0.2;
 /// A larger change of direction is a way back, rad.
 const MAX_TURN: f64 = 2.36;
 /// Points nearer than this to the next one are left alone, m.
@@ -80,7 +79,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
 fn could_pass(context: &Context<'_>, index: usize) -> Option<NamedZone> {
     let site = &context.sites[index];
     let next = stops_for_movements(context, index)?;
-    if site.facts.speed.is_none_or(|speed| speed.tcp < MIN_SPEED) {
+    if context.is_next_to_work(index) || context.is_process(index) {
         return None;
     }
     let corner = context.corner(index)?;

@@ -27,7 +27,7 @@
 //! Unsafe: same path and same order, but the cycle may take some hundredths of a second more.
 //!
 //! ## Assumptions
-//! A cycle may get at most 0.1 s longer.
+//! A cycle may get at most 0.1 s longer. Movements of a process are left alone.
 
 use super::super::context::Context;
 use super::super::edits::{replace, slower, with_speed};
@@ -62,7 +62,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
 fn slower_speed(context: &Context<'_>, index: usize) -> Option<Finding> {
     let site = &context.sites[index];
     let speed = site.facts.speed?;
-    if !site.is_plain() || waits_behind(context, index).is_some() {
+    if !site.is_plain() || context.is_process(index) || waits_behind(context, index).is_some() {
         return None;
     }
     let mut paces = site.executions.iter().filter_map(|step| Some(context.record(*step)?.1.pace));

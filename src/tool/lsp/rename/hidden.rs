@@ -52,8 +52,7 @@ fn has_data(names: &Names, file: FileId, byte: u32, key: &str) -> bool {
     };
     let Some(module) = names.modules().find(around) else { return false };
     let mut routines = names.inside(module).filter(around);
-    names.inside(module).any(is_data)
-        || routines.any(|routine| names.inside(routine).any(is_data))
+    names.inside(module).any(is_data) || routines.any(|routine| names.inside(routine).any(is_data))
 }
 
 /// A call of a routine with the new name inside the scope of the renamed data.

@@ -10,7 +10,7 @@ pub fn github(report: &Report, files: &[SourceFile]) -> String {
     let shown = report.findings.iter().map(|finding| {
         let file = &files[finding.span.file.0 as usize];
         let (start, end) = (file.position(finding.span.start), file.position(finding.span.end));
-        let level = match finding.rule.severity {
+        let level = match finding.severity {
             Severity::Error => "error",
             Severity::Warning => "warning",
             Severity::Info => "notice",

@@ -13,7 +13,7 @@ pub fn gitlab(report: &Report, files: &[SourceFile]) -> Value {
     let prints = fingerprints(&report.findings, files);
     let entries = report.findings.iter().zip(prints).map(|(finding, fingerprint)| {
         let file = &files[finding.span.file.0 as usize];
-        let severity = match finding.rule.severity {
+        let severity = match finding.severity {
             Severity::Error => "major",
             Severity::Warning => "minor",
             Severity::Info => "info",

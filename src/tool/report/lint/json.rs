@@ -2,20 +2,25 @@
 
 use serde_json::{Value, json};
 
+use super::top::{self, Year};
 use crate::rapid::text::SourceFile;
 use crate::tool::lint::{Finding, Report};
 
 /// The JSON of the stable interface.
 #[must_use]
-pub fn json(report: &Report, files: &[SourceFile]) -> Value {
+pub fn json(report: &Report, files: &[SourceFile], year: &Year) -> Value {
     let findings: Vec<Value> = report.findings.iter().map(|it| finding(it, files)).collect();
     json!({
         "findings": findings,
+        "top": top::json(report, files, year),
         "totals": {
             "findings": report.findings.len(),
             "saving_j": report.saving_j(),
             "cycle_energy_j": report.cycle_energy_j,
             "unresolved": report.unresolved,
+            "movements": report.coverage.movements,
+            "movements_simulated": report.coverage.simulated,
+            "not_simulated": report.coverage.missing,
         },
     })
 }
@@ -42,7 +47,7 @@ fn finding(finding: &Finding, files: &[SourceFile]) -> Value {
     json!({
         "code": finding.rule.code,
         "name": finding.rule.name,
-        "severity": finding.rule.severity.name(),
+        "severity": finding.severity.name(),
         "file": file.path,
         "line": start.line,
         "column": start.column,
@@ -55,6 +60,9 @@ fn finding(finding: &Finding, files: &[SourceFile]) -> Value {
         "saving_high_j": saving.map(|s| s.high_j),
         "saving_interval_j": saving.map(|s| [s.low_j, s.high_j]),
         "per": if saving.is_some() { "cycle" } else { "execution" },
+        "at_stake_j": finding.at_stake_j,
+        "confidence": finding.confidence.name(),
+        "places": finding.count,
         "assumptions": finding.assumptions,
         "fix": fix,
     })

@@ -57,7 +57,7 @@ fn result(finding: &Finding, fingerprint: &str, files: &[SourceFile]) -> Value {
     let mut result = json!({
         "ruleId": finding.rule.code,
         "ruleIndex": index,
-        "level": level(finding.rule.severity),
+        "level": level(finding.severity),
         "message": { "text": finding.full_message() },
         "locations": [{ "physicalLocation": place(file, finding.span) }],
         "partialFingerprints": { "joulepath/v1": fingerprint },

@@ -8,9 +8,6 @@ use crate::rapid::text::SourceFile;
 use crate::tool::lint::{Applicability, Finding, Report};
 use crate::tool::report::table::{Align, table};
 
-/// Number of findings in the list of largest savings.
-const MAX_LISTED: usize = 10;
-
 /// Each finding with its source, separated by empty lines.
 #[must_use]
 pub fn full(report: &Report, files: &[SourceFile], paint: Paint) -> String {
@@ -33,7 +30,7 @@ pub fn concise(report: &Report, files: &[SourceFile]) -> String {
 
 fn diagnostic(finding: &Finding) -> Diagnostic {
     let mut diagnostic = Diagnostic::error(finding.span, finding.full_message());
-    diagnostic.severity = finding.rule.severity;
+    diagnostic.severity = finding.severity;
     diagnostic.code = Some(finding.rule.code.to_owned());
     diagnostic.label = Some(finding.rule.name.to_owned());
     let related = finding.related.iter();
@@ -69,13 +66,15 @@ pub fn summary(report: &Report) -> String {
         let _ = write!(out, ", {saving:.1} J of {cycle:.1} J a cycle ({share:.1} %)");
     }
     out.push('\n');
+    if let Some(note) = report.coverage.note() {
+        let _ = writeln!(out, "{note}");
+    }
     out
 }
 
-/// The number of findings by rule (`-` without energies), and the findings with the largest
-/// savings.
+/// The number of findings by rule (`-` without energies).
 #[must_use]
-pub fn statistics(report: &Report, files: &[SourceFile]) -> String {
+pub fn statistics(report: &Report) -> String {
     let mut by_rule: BTreeMap<(&str, &str), (usize, Option<f64>)> = BTreeMap::new();
     for finding in &report.findings {
         let entry = by_rule.entry((finding.rule.code, finding.rule.name)).or_default();
@@ -97,23 +96,5 @@ pub fn statistics(report: &Report, files: &[SourceFile]) -> String {
         ("findings", Align::Right),
         ("J", Align::Right),
     ];
-    let mut out = table(&columns, &rows);
-    let mut most: Vec<&Finding> =
-        report.findings.iter().filter(|finding| finding.saving.is_some()).collect();
-    let joules = |finding: &Finding| finding.saving.map_or(0.0, |saving| saving.energy_j);
-    most.sort_by(|a, b| joules(b).total_cmp(&joules(a)));
-    let rows: Vec<Vec<String>> = most
-        .into_iter()
-        .take(MAX_LISTED)
-        .map(|finding| {
-            let file = &files[finding.span.file.0 as usize];
-            let place = format!("{}:{}", file.path, file.position(finding.span.start).line);
-            vec![format!("{:.1}", joules(finding)), finding.rule.code.to_owned(), place]
-        })
-        .collect();
-    if !rows.is_empty() {
-        let columns = [("J", Align::Right), ("code", Align::Left), ("place", Align::Left)];
-        let _ = write!(out, "\n{}", table(&columns, &rows));
-    }
-    out
+    table(&columns, &rows)
 }

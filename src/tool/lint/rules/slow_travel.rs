@@ -1,0 +1,137 @@
+//! The robot travels through free air at a speed at which it takes more energy than at a higher one.
+//!
+//! ## What it does
+//! Finds joint movements and lines that the programmed speed limits, of at least 200 mm/s, and looks
+//! for the predefined speed at which they take fewest joules. Movements of a procedure with the same
+//! written speed are one finding.
+//!
+//! ## Why it wastes energy
+//! The base load, the open brakes and the holding of the arm run for as long as the way takes. Slow
+//! travel spares friction and copper loss, but below some speed it spares less than the time costs.
+//!
+//! ## How the saving is computed
+//! All these movements are laid on a time line with the written speed and with each higher predefined
+//! one, as long as each step saves at least 1 J more; the best one is proposed.
+//!
+//! ## Example
+//! ```text
+//! MoveJ pOverPick, v300, z50, tGrip;
+//! MoveJ pOverPlace, v300, z50, tGrip;
+//! ```
+//!
+//! ## Use instead
+//! ```text
+//! MoveJ pOverPick, v1500, z50, tGrip;
+//! MoveJ pOverPlace, v1500, z50, tGrip;
+//! ```
+//!
+//! ## Safety
+//! Unsafe: the path stays, but everything on it comes faster: a part may be held too weakly, hoses
+//! may swing, and the speed may be meant, as where people stand near.
+//!
+//! ## Assumptions
+//! A process is slower than 200 mm/s, or has an output that is on for lines and arcs alone. Lines next
+//! to work (an output, a wait, another tool or load), lines along the tool's axis and lines of less than
+//! 150 mm are ways into or out of it, or contours, and keep their speed, and so do joint movements of less than 150 mm next to
+//! work.
+
+use std::collections::BTreeMap;
+
+use nalgebra::Vector3;
+
+use super::super::context::Context;
+use super::super::edits::{faster, replace, with_predefined_speed};
+use super::super::rule::{Finding, MAX_RELATED};
+use super::super::saving::Saving;
+use super::super::settings::THRESHOLD_J;
+use crate::rapid::builtins::MoveForm;
+use crate::rapid::ir::program::RoutineId;
+use crate::rapid::text::Span;
+use crate::retime::motion::pace::Pace;
+use crate::retime::motion::timing::grid::SpeedBound;
+
+rule!("EW206", "slow-travel", Speed, Robot, Info, "slow_travel.rs");
+
+/// Shorter ways may belong to work, m: as in EW101.
+const MIN_WAY: f64 = 0.15;
+/// Largest cosine between the tool's axis and a way across it: tools may lean by 30°.
+const MAX_ACROSS: f64 = 0.5;
+
+fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
+    let mut groups: BTreeMap<(RoutineId, String), Vec<usize>> = BTreeMap::new();
+    for (index, site) in context.sites.iter().enumerate() {
+        if travels(context, index) {
+            let written = context.text(site.speed.span).to_lowercase();
+            groups.entry((site.place.0, written)).or_default().push(index);
+        }
+    }
+    findings.extend(groups.into_values().filter_map(|sites| faster_travel(context, &sites)));
+}
+
+/// Whether a movement only travels, and its programmed speed limits it.
+fn travels(context: &Context<'_>, index: usize) -> bool {
+    let site = &context.sites[index];
+    let is_limited = |step: &usize| {
+        let record = context.record(*step);
+        record.is_some_and(|(_, it, _)| it.pace == Pace::Speed(SpeedBound::Programmed))
+    };
+    let long = || site.executions.iter().all(|step| way(context, *step).norm() >= MIN_WAY);
+    let goes_in = || site.executions.iter().any(|step| is_along_tool(context, *step));
+    site.is_plain()
+        && site.signature.form != MoveForm::Circular
+        && site.executions.iter().any(is_limited)
+        && !context.is_process(index)
+        && !(site.is_linear() && (context.is_next_to_work(index) || goes_in()))
+        && ((!site.is_linear() && !context.is_next_to_work(index)) || long())
+}
+
+/// Whether a movement goes into or out of something in an execution: along the tool's axis.
+fn is_along_tool(context: &Context<'_>, step: usize) -> bool {
+    let way = way(context, step);
+    let axis = context.pose(step).map(|pose| pose.rotation * Vector3::z());
+    axis.is_none_or(|axis| axis.dot(&way).abs() > MAX_ACROSS * way.norm())
+}
+
+/// The way of the tool in an execution, m; none if it is unknown.
+fn way(context: &Context<'_>, step: usize) -> Vector3<f64> {
+    let before = context.trace[..step].iter().rposition(|done| done.what.moves());
+    let from = before.and_then(|before| context.pose(before));
+    let ends = from.zip(context.pose(step));
+    ends.map_or_else(Vector3::zeros, |(from, to)| to.translation.vector - from.translation.vector)
+}
+
+fn faster_travel(context: &Context<'_>, sites: &[usize]) -> Option<Finding> {
+    let sites: Vec<_> = sites.iter().map(|site| &context.sites[*site]).collect();
+    let spans: Vec<Span> = sites.iter().map(|site| site.stmt.span).collect();
+    let speeds = sites.iter().map(|site| site.facts.speed.map(|speed| speed.tcp));
+    let fastest = speeds.collect::<Option<Vec<f64>>>()?.into_iter().fold(0.0, f64::max);
+    let mut best: Option<(String, Saving)> = None;
+    for (name, speed) in faster(fastest) {
+        let difference = context.difference(&spans, &|step| with_predefined_speed(step, speed))?;
+        let least = best.as_ref().map_or(0.0, |(_, best)| best.energy_j) + THRESHOLD_J;
+        if difference.saved.energy_j() < least {
+            break;
+        }
+        if let Ok(saving) = difference.saving() {
+            best = Some((name, saving));
+        }
+    }
+    let (name, saving) = best?;
+    let written = context.text(sites[0].speed.span);
+    let (text, count) = match sites.len() {
+        1 => (format!("{} travels", sites[0].name), String::new()),
+        count => {
+            (format!("{count} movements of this procedure travel"), format!(" in all {count}"))
+        }
+    };
+    let message = format!("{text} through free air with {written}, slower than takes least energy");
+    let mut finding = Finding::new(&RULE, spans[0], message)
+        .with_saving(format!("{name} in place of {written}{count}"), saving)
+        .for_places(sites.len())
+        .with_assumption("no part, hose or person needs the lower speed");
+    for span in spans.iter().skip(1).take(MAX_RELATED) {
+        finding = finding.with_related(*span, "and here");
+    }
+    let edits = sites.iter().map(|site| replace(site.speed.span, &name));
+    Some(finding.with_unsafe_fix(edits))
+}
