@@ -42,7 +42,8 @@ impl Coverage {
             let reason = if context.model.is_none() {
                 "no robot is named (--robot NAME)"
             } else if left.contains(&site.stmt.span) {
-                "the program does not tell where they go, or the robot does not get there"
+                "the program does not tell where they go, or the robot does not get there: \
+                 joulepath simulate tells which"
             } else if site.executions.is_empty() {
                 let name = context.program.routine(site.place.0).name.text.as_str();
                 *uncalled.entry(name).or_default() += 1;

@@ -81,7 +81,7 @@ pub fn text(report: &Report, files: &[SourceFile], year: &Year) -> String {
         ("change", Align::Left),
         ("place", Align::Left),
     ];
-    let mut out = format!("The {} things to fix first\n", rows.len());
+    let mut out = String::from("To fix first\n");
     out.push_str(&table(&columns, &cells.collect::<Vec<_>>()));
     let Year { hours, price, .. } = year;
     let _ = writeln!(
