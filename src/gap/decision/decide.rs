@@ -178,10 +178,7 @@ pub(in crate::gap) fn decide(
     for joint in 0..n {
         let share = search.left(&fit.fit, joint);
         let at = format!("joint {}", joint + 1);
-        // A baseline that has larger errors shows as much of what is usual of this robot.
-        let of_baseline =
-            if has_baseline { fit.fit.of_baseline(search.design, joint) } else { 0.0 };
-        let entry = Gate::Unexplained.of(at, share, tunables.usual_error.max(of_baseline));
+        let entry = Gate::Unexplained.of(at, share, tunables.usual_error);
         if !entry.passed || noisy.contains(&joint) {
             let variable = fit.fit.largest_variable(search.design, joint);
             let id = variable.map_or("other", |of| of.name());

@@ -130,10 +130,8 @@ fn lagged(motions: &[&Motion<'_>], joint: usize, lag: f64) -> Vec<Vec<f64>> {
     motions.iter().map(of).collect()
 }
 
-/// Half waves over a log in which its friction varies, at most, and the shortest of them \[s\]: friction
-/// follows the temperature.
+/// Half waves over a log in which its friction varies.
 const PARTS: usize = 8;
-const SHORTEST: f64 = 5.0;
 
 /// Friction that differs between logs, and, in a drift, between repetitions. In a log that does not
 /// repeat it varies with time.
@@ -143,8 +141,7 @@ fn of_logs(records: &[Record<'_>], joint: usize, tunables: &Tunables) -> Vec<Loc
         let motion = &record.motion;
         let scale = motion.scale(joint);
         let time = Range::of(motion.t.iter());
-        let lasting = (record.duration() / SHORTEST) as usize;
-        let waves = if motion.closed { 0 } else { lasting.min(PARTS) };
+        let waves = if motion.closed { 0 } else { PARTS };
         for (size, series) in
             [(scale.coulomb, &motion.senses[joint]), (scale.viscous, &motion.rates[joint])]
         {

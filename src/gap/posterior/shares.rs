@@ -16,10 +16,8 @@ impl Fit {
     /// smooth functions and of what no function explains.
     #[must_use]
     pub(in crate::gap) fn everyday(&self, design: &Design, joint: usize) -> f64 {
-        let smooth = self.smooth(design, joint, Set::Now, &is_everyday);
-        (smooth
-            + error(design, joint, Set::Now, |range| self.sizes[joint].error[range].value.powi(2)))
-        .sqrt()
+        let smooth = self.smooth(design, joint, &is_everyday);
+        (smooth + error(design, joint, |range| self.sizes[joint].error[range].value.powi(2))).sqrt()
     }
 
     /// What of them the baseline does not have.
@@ -28,16 +26,7 @@ impl Fit {
         let is_of_day = |group: Group| matches!(group, Group::Day(_));
         let size = |range: usize| self.sizes[joint].error[range].value.powi(2);
         let more = |range: usize| (size(range) - size(range + BASELINE)).max(0.0);
-        (self.smooth(design, joint, Set::Now, &is_of_day) + error(design, joint, Set::Now, more))
-            .sqrt()
-    }
-
-    /// Everyday errors of a joint in the baseline, of its torque there.
-    #[must_use]
-    pub(in crate::gap) fn of_baseline(&self, design: &Design, joint: usize) -> f64 {
-        let smooth = self.smooth(design, joint, Set::Baseline, &is_everyday);
-        let size = |range: usize| self.sizes[joint].error[range + BASELINE].value.powi(2);
-        (smooth + error(design, joint, Set::Baseline, size)).sqrt()
+        (self.smooth(design, joint, &is_of_day) + error(design, joint, more)).sqrt()
     }
 
     /// The variable of the largest smooth error of a joint, if smooth errors are most of it.
@@ -47,17 +36,15 @@ impl Fit {
         design: &Design,
         joint: usize,
     ) -> Option<Variable> {
-        let error =
-            error(design, joint, Set::Now, |range| self.sizes[joint].error[range].value.powi(2));
+        let error = error(design, joint, |range| self.sizes[joint].error[range].value.powi(2));
         let variables = design.joints[joint].groups.iter().filter_map(|group| match group {
             Group::Smooth(variable) => Some(*variable),
             _ => None,
         });
         let mut variables: Vec<Variable> = variables.collect();
         variables.dedup();
-        let share = |of: &Variable| {
-            self.smooth(design, joint, Set::Now, &|group| group == Group::Smooth(*of))
-        };
+        let share =
+            |of: &Variable| self.smooth(design, joint, &|group| group == Group::Smooth(*of));
         let shares = variables.iter().map(|of| (share(of), *of));
         let largest = shares.max_by(|a, b| a.0.total_cmp(&b.0));
         largest.filter(|(share, _)| *share > error).map(|(_, of)| of)
@@ -109,7 +96,7 @@ impl Fit {
             let [a, b] = [&a, &b].map(|rows| rows.rows(cell.rows.start, cell.rows.len()));
             a.dot(&b)
         });
-        products.sum::<f64>() / power(of, Set::Now).max(f64::MIN_POSITIVE)
+        products.sum::<f64>() / power(of).max(f64::MIN_POSITIVE)
     }
 
     /// Whether members act over time: what does not change from repetition to repetition is friction.
@@ -135,13 +122,7 @@ impl Fit {
 
     /// Mean square of smooth errors of some groups, of the torque's: what parameters could explain as
     /// well is none.
-    fn smooth(
-        &self,
-        design: &Design,
-        joint: usize,
-        set: Set,
-        is_counted: &dyn Fn(Group) -> bool,
-    ) -> f64 {
+    fn smooth(&self, design: &Design, joint: usize, is_counted: &dyn Fn(Group) -> bool) -> f64 {
         let of = &design.joints[joint];
         let reduced = &self.reduced[joint];
         let parameters = design.parameters.count();
@@ -153,7 +134,7 @@ impl Fit {
         let fixed = (0..of.groups.len()).filter(|k| of.groups[*k] == Group::Fixed);
         let numbers: Vec<usize> = (0..parameters).chain(fixed.map(|k| parameters + k)).collect();
         let mut own = of.base.select_columns(&numbers);
-        for cell in of.cells.iter().filter(|cell| cell.set != set) {
+        for cell in of.cells.iter().filter(|cell| cell.set != Set::Now) {
             own.rows_mut(cell.rows.start, cell.rows.len()).fill(0.0);
             smooth.rows_mut(cell.rows.start, cell.rows.len()).fill(0.0);
         }
@@ -164,21 +145,20 @@ impl Fit {
         if let Some(factor) = Cholesky::new(gram) {
             smooth -= &own * factor.solve(&(&transposed * &smooth));
         }
-        smooth.norm_squared() / power(of, set).max(f64::MIN_POSITIVE)
+        smooth.norm_squared() / power(of).max(f64::MIN_POSITIVE)
     }
 }
 
 /// Mean square of an error that is given by range of frequencies, of the torque's.
-fn error(design: &Design, joint: usize, set: Set, square: impl Fn(usize) -> f64) -> f64 {
+fn error(design: &Design, joint: usize, square: impl Fn(usize) -> f64) -> f64 {
     let of = &design.joints[joint];
-    let squares =
-        of_set(of, set).map(|cell| square(cell.range) * cell.power * cell.rows.len() as f64);
-    squares.sum::<f64>() / power(of, set).max(f64::MIN_POSITIVE)
+    let squares = now(of).map(|cell| square(cell.range) * cell.power * cell.rows.len() as f64);
+    squares.sum::<f64>() / power(of).max(f64::MIN_POSITIVE)
 }
 
-/// Sum of the squares of the model's torque in the logs of a set.
-fn power(of: &JointDesign, set: Set) -> f64 {
-    of_set(of, set).map(|cell| cell.power * cell.rows.len() as f64).sum()
+/// Sum of the squares of the model's torque in the logs as they are now.
+fn power(of: &JointDesign) -> f64 {
+    now(of).map(|cell| cell.power * cell.rows.len() as f64).sum()
 }
 
 /// Place of the baseline's sizes behind those of the logs as they are now.
@@ -193,7 +173,7 @@ fn is_everyday(group: Group) -> bool {
     }
 }
 
-/// Cells of the logs of a set.
-fn of_set(of: &JointDesign, set: Set) -> impl Iterator<Item = &Cell> {
-    of.cells.iter().filter(move |cell| cell.set == set)
+/// Cells of the logs as they are now.
+fn now(of: &JointDesign) -> impl Iterator<Item = &Cell> {
+    of.cells.iter().filter(|cell| cell.set == Set::Now)
 }
