@@ -2,11 +2,14 @@
 
 #![expect(clippy::unwrap_used, reason = "a missing identifier fails the test")]
 
+mod marks;
+
 use std::fmt::Write as _;
 
 use joulepath::rapid::names::{DeclarationId, Kind, Meaning, Names, SourceText};
 use joulepath::rapid::syntax::{self, Parse};
 use joulepath::rapid::text::{FileId, SourceFile};
+use marks::unmarked;
 
 /// Identifiers that the tests ask for are marked: `<1>name`.
 struct Program {
@@ -21,20 +24,8 @@ fn program(texts: &[&str]) -> Program {
     let mut marks = Vec::new();
     for (index, text) in texts.iter().enumerate() {
         let id = FileId(index as u32);
-        let mut plain = String::new();
-        let mut rest = *text;
-        while let Some(at) = rest.find('<') {
-            let number = rest[at + 1..].split_once('>').and_then(|(n, _)| n.parse().ok());
-            let Some(number) = number else {
-                plain.push_str(&rest[..=at]);
-                rest = &rest[at + 1..];
-                continue;
-            };
-            plain.push_str(&rest[..at]);
-            marks.push((number, id, plain.len() as u32));
-            rest = rest[at..].split_once('>').unwrap().1;
-        }
-        plain.push_str(rest);
+        let (plain, found) = unmarked(text);
+        marks.extend(found.into_iter().map(|(number, byte)| (number, id, byte as u32)));
         files.push(SourceFile::new(id, format!("{index}.mod"), plain.into_bytes()));
     }
     let parses: Vec<Parse> = files.iter().map(|file| syntax::parse(&file.bytes)).collect();

@@ -6,6 +6,9 @@
     reason = "each test uses its part of this module; an expectation would fail in the others"
 )]
 
+#[path = "../marks/mod.rs"]
+mod marks;
+
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::thread::JoinHandle;
@@ -16,6 +19,7 @@ use joulepath::rapid::text::{FileId, SourceFile};
 use joulepath::tool::lint::Programs;
 use joulepath::tool::lsp::{Host, LspError, Options, ProjectFiles, TaskFiles, serve_on};
 use lsp_server::{Connection, Message, Notification, Request, ResponseError};
+use marks::unmarked;
 use serde_json::{Value, json};
 
 /// The folder of the workspace.
@@ -305,20 +309,9 @@ impl Marked {
         let mut memory = Memory::default();
         let mut marks = BTreeMap::new();
         for (file, text) in files {
-            let mut plain = String::new();
-            let mut rest = *text;
-            while let Some(at) = rest.find('<') {
-                let number = rest[at + 1..].split_once('>').and_then(|(n, _)| n.parse().ok());
-                let Some(number) = number else {
-                    plain.push_str(&rest[..=at]);
-                    rest = &rest[at + 1..];
-                    continue;
-                };
-                plain.push_str(&rest[..at]);
-                marks.insert(number, Place::of(file, &plain, plain.len()));
-                rest = rest[at..].split_once('>').unwrap().1;
-            }
-            plain.push_str(rest);
+            let (plain, found) = unmarked(text);
+            let place = |(number, byte)| (number, Place::of(file, &plain[..byte], byte));
+            marks.extend(found.into_iter().map(place));
             memory.files.push(((*file).to_owned(), plain.into_bytes()));
         }
         Marked { memory, marks }

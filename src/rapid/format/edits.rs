@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::alignment::{Trailing, align};
 use super::gap::Gap;
-use super::layout::{Layout, Start, closes};
+use super::layout::{Layout, Start};
 use super::protected::Protected;
 use super::spacing::{self, Word};
 use super::style::{KeywordCase, Style};
@@ -197,7 +197,7 @@ impl<'f> Formatter<'f> {
         let steps = usize::from(self.layout.steps[next]);
         match self.layout.starts[next] {
             Start::Inside => steps + 1,
-            Start::Line if closes(self.parse.tree.tokens().kind(next)) => steps + 1,
+            Start::Line if self.parse.tree.tokens().kind(next).closes_block() => steps + 1,
             Start::Line if divides(self.parse.tree.tokens().kind(next)) => {
                 steps + usize::from(self.column(token) > self.column(next))
             }

@@ -1,6 +1,6 @@
 //! What begins a line, and how far it is indented.
 
-use crate::rapid::syntax::{Node, NodeKind, TokenKind, Tokens, Tree};
+use crate::rapid::syntax::{Node, NodeKind, Tokens, Tree};
 
 /// Where a token stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -110,7 +110,7 @@ impl Walk<'_> {
     /// The own keywords of a block that close it or begin a part of it.
     fn closers(&mut self, node: Node<'_>, steps: usize) {
         for token in node.own_tokens() {
-            if closes(token.kind()) {
+            if token.kind().closes_block() {
                 self.begin(token.range().start, steps, Start::Line);
             }
         }
@@ -205,20 +205,4 @@ fn begins_line(kind: NodeKind) -> bool {
                 | NodeKind::DefaultBranch
                 | NodeKind::Placeholder
         )
-}
-
-/// Words that end a block of statements.
-pub(super) fn closes(kind: TokenKind) -> bool {
-    matches!(
-        kind,
-        TokenKind::EndIf
-            | TokenKind::EndFor
-            | TokenKind::EndWhile
-            | TokenKind::EndTest
-            | TokenKind::EndProc
-            | TokenKind::EndFunc
-            | TokenKind::EndTrap
-            | TokenKind::EndRecord
-            | TokenKind::EndModule
-    )
 }

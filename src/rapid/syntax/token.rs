@@ -181,6 +181,23 @@ impl TokenKind {
         by_packed(pack(word))
     }
 
+    /// Whether the keyword ends a block of statements.
+    #[must_use]
+    pub fn closes_block(self) -> bool {
+        matches!(
+            self,
+            TokenKind::EndIf
+                | TokenKind::EndFor
+                | TokenKind::EndWhile
+                | TokenKind::EndTest
+                | TokenKind::EndProc
+                | TokenKind::EndFunc
+                | TokenKind::EndTrap
+                | TokenKind::EndRecord
+                | TokenKind::EndModule
+        )
+    }
+
     /// White space or comment.
     #[must_use]
     pub fn is_trivia(self) -> bool {

@@ -184,24 +184,20 @@ impl<'p> Flow<'p> {
     /// The next actions after a place, on every path.
     pub fn following(&self, from: Place, through: Through) -> BTreeSet<Next> {
         let mut found = BTreeSet::new();
-        let mut seen = BTreeSet::new();
-        let mut open: Vec<Place> = Vec::new();
-        self.push_next(from, &mut open);
-        while let Some(place) = open.pop() {
-            if !seen.insert(place) {
-                continue;
-            }
-            if seen.len() > MAX_STEPS {
+        let mut search = Search::default();
+        self.push_next(from, &mut search.open);
+        while let Some(place) = search.next() {
+            if search.seen.len() > MAX_STEPS {
                 found.insert(Next::Other);
                 break;
             }
             let (routine, node) = place;
             match self.graph(routine).nodes[node].step {
-                Step::Entry | Step::Count(_) => self.push_next(place, &mut open),
-                Step::Exit => self.leave(routine, &mut open, &mut found),
+                Step::Entry | Step::Count(_) => self.push_next(place, &mut search.open),
+                Step::Exit => self.leave(routine, &mut search.open, &mut found),
                 Step::Condition(expr) | Step::Test(expr) => {
                     if through == Through::All || self.data_names.has_only_data(routine, expr) {
-                        self.push_next(place, &mut open);
+                        self.push_next(place, &mut search.open);
                     } else {
                         found.insert(Next::Other);
                     }
@@ -210,7 +206,7 @@ impl<'p> Flow<'p> {
                     let all = through == Through::All;
                     let next = match self.class(routine, stmt) {
                         Class::Call(callee) => {
-                            open.push((callee, 0));
+                            search.open.push((callee, 0));
                             continue;
                         }
                         Class::NoEffect => None,
@@ -222,7 +218,7 @@ impl<'p> Flow<'p> {
                         Class::Other => (!all || self.is_opaque(stmt)).then_some(Next::Other),
                     };
                     if next.is_none() {
-                        self.push_next(place, &mut open);
+                        self.push_next(place, &mut search.open);
                     }
                     found.extend(next);
                 }
@@ -235,24 +231,20 @@ impl<'p> Flow<'p> {
     /// the instruction `key`, and each further call of that instruction ends it.
     pub fn in_force(&self, from: Place, key: &str) -> InForce {
         let mut found = InForce::default();
-        let mut seen = BTreeSet::new();
-        let mut open: Vec<Place> = Vec::new();
-        self.push_next(from, &mut open);
-        while let Some(place) = open.pop() {
-            if !seen.insert(place) {
-                continue;
-            }
+        let mut search = Search::default();
+        self.push_next(from, &mut search.open);
+        while let Some(place) = search.next() {
             let (routine, node) = place;
             let stmt = match self.graph(routine).nodes[node].step {
                 Step::Statement(stmt) => stmt,
                 Step::Exit => {
                     let mut ends = BTreeSet::new();
-                    self.leave(routine, &mut open, &mut ends);
+                    self.leave(routine, &mut search.open, &mut ends);
                     found.runs_out |= !ends.is_empty();
                     continue;
                 }
                 _ => {
-                    self.push_next(place, &mut open);
+                    self.push_next(place, &mut search.open);
                     continue;
                 }
             };
@@ -262,7 +254,7 @@ impl<'p> Flow<'p> {
             }
             match self.class(routine, stmt) {
                 Class::Call(callee) => {
-                    open.push((callee, 0));
+                    search.open.push((callee, 0));
                     continue;
                 }
                 Class::Move => {
@@ -270,7 +262,7 @@ impl<'p> Flow<'p> {
                 }
                 _ => {}
             }
-            self.push_next(place, &mut open);
+            self.push_next(place, &mut search.open);
         }
         found
     }
@@ -332,6 +324,24 @@ impl<'p> Flow<'p> {
         }
         for caller in callers {
             self.push_next(*caller, open);
+        }
+    }
+}
+
+/// A search for places, each of which is visited once.
+#[derive(Default)]
+struct Search {
+    open: Vec<Place>,
+    seen: BTreeSet<Place>,
+}
+
+impl Search {
+    fn next(&mut self) -> Option<Place> {
+        loop {
+            let place = self.open.pop()?;
+            if self.seen.insert(place) {
+                return Some(place);
+            }
         }
     }
 }

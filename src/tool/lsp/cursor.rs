@@ -126,26 +126,18 @@ fn statement(tokens: &Tokens, before: usize) -> (Vec<usize>, Place) {
 
 /// Whether a statement begins behind a word.
 fn ends_before(kind: TokenKind) -> bool {
-    matches!(
+    let opens = matches!(
         kind,
         TokenKind::Then
             | TokenKind::Else
             | TokenKind::Do
             | TokenKind::Colon
-            | TokenKind::EndIf
-            | TokenKind::EndFor
-            | TokenKind::EndWhile
-            | TokenKind::EndTest
-            | TokenKind::EndProc
-            | TokenKind::EndFunc
-            | TokenKind::EndTrap
-            | TokenKind::EndRecord
-            | TokenKind::EndModule
             | TokenKind::Error
             | TokenKind::Undo
             | TokenKind::Backward
             | TokenKind::HeaderMark
-    )
+    );
+    opens || kind.closes_block()
 }
 
 /// Whether a word is the first of a statement.

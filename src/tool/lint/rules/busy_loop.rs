@@ -32,7 +32,7 @@
 use super::super::context::Context;
 use super::super::flow::Class;
 use super::super::rule::Finding;
-use super::polling_wait::{all_blocks, asks_outside, polling_loop};
+use super::polling_wait::{PollingLoop, asks_outside, polling_loops};
 use crate::rapid::ir::hir::{Expr, Stmt, StmtKind};
 use crate::rapid::ir::program::RoutineId;
 
@@ -42,19 +42,13 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     if context.sites.is_empty() {
         return;
     }
-    for (routine, body) in context.program.routines() {
-        for block in all_blocks(body) {
-            for (index, stmt) in block.iter().enumerate() {
-                let before = index.checked_sub(1).map(|before| &block[before]);
-                let Some((condition, body)) = polling_loop(stmt, before) else { continue };
-                let names = &context.flow.data_names;
-                let input = asks_outside(condition) && !names.has_only_data(routine, condition);
-                let asks = input || reads_flag(context, routine, condition);
-                if asks && takes_no_time(context, routine, body) {
-                    let message = "a loop asks without a pause: WaitDI or WaitUntil wait for it";
-                    findings.push(Finding::new(&RULE, stmt.span, message));
-                }
-            }
+    for PollingLoop { routine, stmt, condition, body } in polling_loops(context) {
+        let input =
+            asks_outside(condition) && !context.flow.data_names.has_only_data(routine, condition);
+        let asks = input || reads_flag(context, routine, condition);
+        if asks && takes_no_time(context, routine, body) {
+            let message = "a loop asks without a pause: WaitDI or WaitUntil wait for it";
+            findings.push(Finding::new(&RULE, stmt.span, message));
         }
     }
 }

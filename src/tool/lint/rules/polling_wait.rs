@@ -49,22 +49,40 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     if context.sites.is_empty() {
         return;
     }
-    for (routine, body) in context.program.routines() {
-        for block in all_blocks(body) {
+    for PollingLoop { routine, stmt, condition, body } in polling_loops(context) {
+        if asks_outside(condition)
+            && !context.flow.data_names.has_only_data(routine, condition)
+            && only_waits(context, routine, body)
+        {
+            let message =
+                "a loop polls with WaitTime: WaitDI or WaitUntil wait for the input itself";
+            findings.push(Finding::new(&RULE, stmt.span, message));
+        }
+    }
+}
+
+/// A loop that may wait for something.
+pub(super) struct PollingLoop<'h> {
+    pub(super) routine: RoutineId,
+    pub(super) stmt: &'h Stmt,
+    pub(super) condition: &'h Expr,
+    pub(super) body: &'h [Stmt],
+}
+
+/// The loops of a program, also those that are made with a jump.
+pub(super) fn polling_loops<'h>(context: &Context<'h>) -> Vec<PollingLoop<'h>> {
+    let mut loops = Vec::new();
+    for (routine, all) in context.program.routines() {
+        for block in all_blocks(all) {
             for (index, stmt) in block.iter().enumerate() {
                 let before = index.checked_sub(1).map(|before| &block[before]);
-                let Some((condition, body)) = polling_loop(stmt, before) else { continue };
-                if asks_outside(condition)
-                    && !context.flow.data_names.has_only_data(routine, condition)
-                    && only_waits(context, routine, body)
-                {
-                    let message = "a loop polls with WaitTime: WaitDI or WaitUntil wait for the \
-                                   input itself";
-                    findings.push(Finding::new(&RULE, stmt.span, message));
+                if let Some((condition, body)) = polling_loop(stmt, before) {
+                    loops.push(PollingLoop { routine, stmt, condition, body });
                 }
             }
         }
     }
+    loops
 }
 
 /// The statement lists of a routine, those inside of statements too.
