@@ -12,6 +12,7 @@ mod marks;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::thread::JoinHandle;
+use std::time::Duration;
 
 use joulepath::rapid::check::Extent;
 use joulepath::rapid::format::Style;
@@ -24,6 +25,8 @@ use serde_json::{Value, json};
 
 /// The folder of the workspace.
 const FOLDER: &str = "/cell";
+/// A user who pauses for this long waits for diagnostics.
+const PAUSE: Duration = Duration::from_millis(100);
 
 /// Files in memory.
 #[derive(Clone, Default)]
@@ -70,6 +73,14 @@ impl Host for Memory {
 
     fn style(&self, _: &Path) -> Result<Style, String> {
         Ok(self.style.unwrap_or_default())
+    }
+
+    fn until_pause(&self, connection: &Connection) -> Result<Option<Message>, LspError> {
+        match connection.receiver.recv_timeout(PAUSE) {
+            Ok(message) => Ok(Some(message)),
+            Err(error) if error.is_timeout() => Ok(None),
+            Err(_) => Err(LspError::Closed),
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Duration;
 
 use clap::Args;
 use rayon::prelude::*;
@@ -13,10 +14,14 @@ use super::lint::{LintArgs, Setup};
 use crate::rapid::format::Style;
 use crate::rapid::syntax::{self, Parse};
 use crate::tool::lint::Programs;
-use crate::tool::lsp::{self, Host, Options, ProjectFiles, TaskFiles};
+use crate::tool::lsp::{
+    self, Connection, Host, LspError, Message, Options, ProjectFiles, TaskFiles,
+};
 
 /// The procedure that starts a program, where nothing names another one.
 const ENTRY: &str = "main";
+/// How long the user has to pause before diagnostics are made.
+const PAUSE: Duration = Duration::from_millis(100);
 
 /// Serve an editor over standard input and output (Language Server Protocol).
 #[derive(Debug, Args)]
@@ -93,6 +98,14 @@ impl Host for Disk {
         let cell = CellArgs { paths: vec![file.to_path_buf()], ..CellArgs::default() };
         let (config, _) = common::configuration(&cell).map_err(|error| format!("{error:#}"))?;
         Ok(config.format.style())
+    }
+
+    fn until_pause(&self, connection: &Connection) -> Result<Option<Message>, LspError> {
+        match connection.receiver.recv_timeout(PAUSE) {
+            Ok(message) => Ok(Some(message)),
+            Err(error) if error.is_timeout() => Ok(None),
+            Err(_) => Err(LspError::Closed),
+        }
     }
 }
 

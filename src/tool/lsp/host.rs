@@ -2,13 +2,16 @@
 
 use std::path::Path;
 
+use lsp_server::{Connection, Message};
+
+use super::error::LspError;
 use super::options::Options;
 use crate::rapid::check::Extent;
 use crate::rapid::format::Style;
 use crate::rapid::text::SourceFile;
 use crate::tool::lint::Programs;
 
-/// Reads files and settings for the server.
+/// Reads files and settings for the server, and has the clock.
 pub trait Host {
     /// The modules in a folder and its folders; none if it cannot be read.
     fn project(&self, options: &Options, folder: &Path) -> ProjectFiles;
@@ -21,6 +24,12 @@ pub trait Host {
     /// # Errors
     /// Its configuration is wrong.
     fn style(&self, file: &Path) -> Result<Style, String>;
+
+    /// The next message, or `None` once the user pauses: then diagnostics are made.
+    ///
+    /// # Errors
+    /// The client has closed the connection.
+    fn until_pause(&self, connection: &Connection) -> Result<Option<Message>, LspError>;
 }
 
 /// The modules of a folder.

@@ -19,6 +19,7 @@ mod definition;
 mod diagnostics;
 mod documents;
 mod entity;
+mod error;
 mod findings;
 mod folding;
 mod formatting;
@@ -43,36 +44,17 @@ mod uri;
 mod workspace;
 mod writes;
 
+pub use error::LspError;
 pub use host::{Host, ProjectFiles, TaskFiles};
+pub use lsp_server::{Connection, Message};
 pub use options::Options;
 
 use std::path::PathBuf;
-use std::time::Duration;
 
-use lsp_server::{Connection, Message};
 use serde_json::{Value, from_value, json};
 
 use client::Client;
 use server::Server;
-
-/// How long the user has to pause before diagnostics are made.
-const PAUSE: Duration = Duration::from_millis(100);
-
-/// Why a session ended early.
-#[derive(Debug, thiserror::Error)]
-pub enum LspError {
-    /// The client does not speak the protocol.
-    #[error(
-        "the editor does not speak the language server protocol: {0}; start the server from one"
-    )]
-    Protocol(#[from] lsp_server::ProtocolError),
-    /// The client has closed the connection.
-    #[error("the editor has closed the connection")]
-    Closed,
-    /// Standard input or output failed.
-    #[error("standard input or output failed: {0}")]
-    Io(#[from] std::io::Error),
-}
 
 /// Serves an editor over standard input and output until it ends the session.
 ///
@@ -102,18 +84,18 @@ pub fn serve_on(
     let mut server = Server::new(host, options, client, folders(&params));
     send(&connection, server.start())?;
     loop {
-        let message = if server.has_news() {
-            match connection.receiver.recv_timeout(PAUSE) {
-                Ok(message) => message,
-                Err(error) if error.is_timeout() => {
-                    send(&connection, server.publish())?;
-                    continue;
-                }
-                Err(_) => break,
-            }
+        let next = if server.has_news() {
+            server.host.until_pause(&connection)
         } else {
-            let Ok(message) = connection.receiver.recv() else { break };
-            message
+            connection.receiver.recv().map(Some).map_err(|_| LspError::Closed)
+        };
+        let message = match next {
+            Ok(Some(message)) => message,
+            Ok(None) => {
+                send(&connection, server.publish())?;
+                continue;
+            }
+            Err(_) => break,
         };
         match message {
             Message::Request(request) => {
