@@ -460,7 +460,10 @@ const HOURS_OF_A_YEAR: f64 = 8784.0;
 pub(super) fn hours_per_year(stated: Option<f64>) -> anyhow::Result<f64> {
     let hours = stated.unwrap_or(HOURS_PER_YEAR);
     if !(hours > 0.0 && hours <= HOURS_OF_A_YEAR) {
-        bail!("hours_per_year = {hours}: give hours above 0, at most {HOURS_OF_A_YEAR}");
+        bail!(
+            "{hours} hours a year (--hours or hours_per_year): give hours above 0, at most \
+             {HOURS_OF_A_YEAR}"
+        );
     }
     Ok(hours)
 }
