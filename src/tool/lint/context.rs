@@ -56,6 +56,8 @@ pub struct Context<'c> {
     pub(super) work: Work,
     /// The steps of the trace at which a process runs.
     pub(super) process_steps: OnceLock<BTreeSet<usize>>,
+    /// The steps of the trace at which the robot holds a part.
+    pub(super) carrying_steps: OnceLock<BTreeSet<usize>>,
 }
 
 /// The corner at the goal of a movement, the worst case of all its executions.
@@ -152,6 +154,7 @@ impl<'c> Context<'c> {
             unknown_starts,
             work,
             process_steps: OnceLock::new(),
+            carrying_steps: OnceLock::new(),
         }
     }
 

@@ -68,7 +68,23 @@ fn process_steps(context: &Context<'_>) -> BTreeSet<usize> {
     found
 }
 
+/// The steps of the trace between a set and a reset that hold a part.
+fn carrying_steps(context: &Context<'_>) -> BTreeSet<usize> {
+    let carrying = |(on, off): &(usize, usize)| carries(context, *on, *off);
+    resets(context).into_iter().filter(carrying).flat_map(|(on, off)| on..off).collect()
+}
+
 impl Context<'_> {
+    /// Whether the robot holds a part in some execution of a movement.
+    pub(super) fn carries_part(&self, site: usize) -> bool {
+        let steps = self.carrying_steps.get_or_init(|| carrying_steps(self));
+        self.sites[site].executions.iter().any(|step| {
+            let movement = self.trace[*step].what.movement();
+            let load = movement.and_then(|movement| movement.settings.grip_load);
+            steps.contains(step) || load.is_some_and(|load| load.mass > 0.0)
+        })
+    }
+
     /// Whether a process runs in some execution of a movement.
     pub(super) fn is_in_process(&self, site: usize) -> bool {
         let steps = self.process_steps.get_or_init(|| process_steps(self));

@@ -24,7 +24,8 @@ pub(super) fn severity(finding: &Finding) -> Severity {
 }
 
 /// The findings with joules that are most worth a look, at most `count`: those of which the rule is
-/// sure, then the others, each by joules. Findings at one place are alternatives: only the first counts.
+/// sure, then the others, each by joules. Findings at one place
+/// of which the rule is equally sure are alternatives: only the first counts.
 #[must_use]
 pub fn top(findings: &[Finding], count: usize) -> Vec<&Finding> {
     let mut ranked: Vec<&Finding> =
@@ -32,7 +33,7 @@ pub fn top(findings: &[Finding], count: usize) -> Vec<&Finding> {
     let order = |finding: &Finding| joules(finding).unwrap_or_default();
     ranked.sort_by(|a, b| b.confidence.cmp(&a.confidence).then(order(b).total_cmp(&order(a))));
     let mut places = BTreeSet::new();
-    ranked.retain(|finding| places.insert(finding.span));
+    ranked.retain(|finding| places.insert((finding.confidence, finding.span)));
     ranked.truncate(count);
     ranked
 }

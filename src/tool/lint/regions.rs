@@ -28,6 +28,11 @@ impl Region<'_> {
         self.free.iter().map(|site| context.sites[*site].stmt.span).collect()
     }
 
+    /// Whether it may go unasked: no process needs it, and no part that is carried.
+    pub(super) fn may_go(&self, context: &Context<'_>) -> bool {
+        !self.spares && !self.free.iter().any(|site| context.carries_part(*site))
+    }
+
     /// The lines of these movements, as they follow a change in a message: empty if they are all
     /// for which the setting is in force.
     pub(super) fn lines(&self, context: &Context<'_>) -> String {

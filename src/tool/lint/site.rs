@@ -60,7 +60,16 @@ pub struct Facts {
 
 /// The goal of a movement.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Goal {
+pub struct Goal {
+    /// Where the robot goes.
+    pub robot: RobotGoal,
+    /// Where the external axes go, in RAPID's units, if it is known.
+    external: Option<[f64; 6]>,
+}
+
+/// The goal of a robot.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RobotGoal {
     /// Joints, rad.
     Joints([f64; 6]),
     /// A pose in a work object, m.
@@ -70,9 +79,9 @@ pub enum Goal {
 impl Goal {
     /// The pose; `None` for joints.
     pub fn pose(&self) -> Option<&Isometry3<f64>> {
-        match self {
-            Goal::Pose(pose, _) => Some(pose),
-            Goal::Joints(_) => None,
+        match &self.robot {
+            RobotGoal::Pose(pose, _) => Some(pose),
+            RobotGoal::Joints(_) => None,
         }
     }
 
@@ -80,17 +89,18 @@ impl Goal {
     pub fn is_same(&self, other: &Goal) -> bool {
         /// m and rad.
         const TOLERANCE: f64 = 1e-5;
-        match (self, other) {
-            (Goal::Joints(a), Goal::Joints(b)) => {
+        let is_same_place = match (&self.robot, &other.robot) {
+            (RobotGoal::Joints(a), RobotGoal::Joints(b)) => {
                 a.iter().zip(b).all(|(a, b)| (a - b).abs() < TOLERANCE)
             }
-            (Goal::Pose(a, conf), Goal::Pose(b, other)) => {
+            (RobotGoal::Pose(a, conf), RobotGoal::Pose(b, other)) => {
                 conf == other
                     && (a.translation.vector - b.translation.vector).norm() < TOLERANCE
                     && a.rotation.angle_to(&b.rotation) < TOLERANCE
             }
             _ => false,
-        }
+        };
+        is_same_place && self.external == other.external
     }
 }
 
@@ -227,10 +237,11 @@ fn reads_local(names: &DataNames<'_>, routine: RoutineId, expr: &Expr) -> bool {
 
 /// The facts of an executed movement.
 pub fn facts_of(movement: &Movement) -> Facts {
-    let goal = match &movement.target {
-        Target::Joints(q) => Goal::Joints(*q),
-        Target::Pose(target) => Goal::Pose(target.pose, target.conf),
+    let robot = match &movement.target {
+        Target::Joints(q) => RobotGoal::Joints(*q),
+        Target::Pose(target) => RobotGoal::Pose(target.pose, target.conf),
     };
+    let goal = Goal { robot, external: movement.external };
     Facts { zone: Some(movement.zone), speed: Some(movement.speed), goal: Some(goal) }
 }
 
@@ -265,19 +276,22 @@ fn speed_of(datum: &Datum) -> Option<Speed> {
 }
 
 fn goal_of(datum: &Datum) -> Option<Goal> {
-    match parts(datum)? {
-        [joints, _] => {
+    let (external, robot) = parts(datum)?.split_last()?;
+    let external = numbers(external).and_then(|axes| axes.try_into().ok());
+    let robot = match robot {
+        [joints] => {
             let joints: [f64; 6] = numbers(joints)?.try_into().ok()?;
-            Some(Goal::Joints(joints.map(f64::to_radians)))
+            RobotGoal::Joints(joints.map(f64::to_radians))
         }
-        [position, turn, conf, _] => {
+        [position, turn, conf] => {
             let [x, y, z] = *numbers(position)?.as_slice() else { return None };
             let [w, i, j, k] = *numbers(turn)?.as_slice() else { return None };
             let conf: [f64; 4] = numbers(conf)?.try_into().ok()?;
             let turn = UnitQuaternion::try_new(Quaternion::new(w, i, j, k), 0.5)?;
             let place = Translation3::from(Vector3::new(x, y, z) * 1e-3);
-            Some(Goal::Pose(Isometry3::from_parts(place, turn), conf.map(|c| c.round() as i32)))
+            RobotGoal::Pose(Isometry3::from_parts(place, turn), conf.map(|c| c.round() as i32))
         }
-        _ => None,
-    }
+        _ => return None,
+    };
+    Some(Goal { robot, external })
 }

@@ -9,6 +9,8 @@ use crate::rapid::ir::value::{Dependence, Origin, Value};
 use crate::rapid::ir::walk::statements;
 use crate::rapid::text::Span;
 
+/// The note on a program that runs longer than is simulated.
+pub const NO_END: &str = "the program does not end: the cycle is shown up to here";
 /// The note on an endless loop.
 const ENDLESS: &str = "an endless loop: simulated for one pass";
 
@@ -175,7 +177,7 @@ impl Executor<'_> {
     pub(super) fn is_over(&mut self, at: Span) -> bool {
         self.statements += 1;
         if self.statements > MAX_STATEMENTS {
-            self.unresolved(at, "the program does not end: the cycle is shown up to here");
+            self.unresolved(at, NO_END);
             return true;
         }
         self.machine.is_at_limit()

@@ -31,6 +31,7 @@ mod waits;
 
 pub use constant::{evaluate, value_of};
 pub use executor::{Execution, Note};
+pub use flow::NO_END;
 pub use machine::{Machine, WaitResult};
 
 use executor::Executor;

@@ -2,7 +2,8 @@
 //!
 //! ## What it does
 //! Finds `WHILE` loops whose condition reads an input or a flag and whose body does nothing that takes
-//! time, and the same loops made of a label, an `IF` and a `GOTO`, in programs that move a robot.
+//! time (it may count or read a clock), the same loops made of a label, an `IF` and a `GOTO`, and
+//! `WHILE TRUE` loops that do something only where an input asks for it, in programs that move a robot.
 //!
 //! ## Why it wastes energy
 //! The controller spends its time on the loop, so that other tasks, communication and the planning of
@@ -33,7 +34,8 @@ use super::super::context::Context;
 use super::super::flow::Class;
 use super::super::rule::Finding;
 use super::polling_wait::{PollingLoop, asks_outside, polling_loops};
-use crate::rapid::ir::hir::{Expr, Stmt, StmtKind};
+use crate::rapid::builtins::{self, Source};
+use crate::rapid::ir::hir::{Arg, Expr, ExprKind, Ident, Stmt, StmtKind};
 use crate::rapid::ir::program::RoutineId;
 
 rule!("EW306", "busy-loop", Dwell, Text, Info, "busy_loop.rs");
@@ -43,11 +45,22 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         return;
     }
     for PollingLoop { routine, stmt, condition, body } in polling_loops(context) {
-        let input =
-            asks_outside(condition) && !context.flow.data_names.has_only_data(routine, condition);
-        let asks = input || reads_flag(context, routine, condition);
-        if asks && takes_no_time(context, routine, body) {
+        let asks = |condition: &Expr| {
+            asks_outside(condition) && !context.flow.data_names.has_only_data(routine, condition)
+        };
+        let is_input = asks(condition);
+        let waits_for_it = is_input || reads_flag(context, routine, condition);
+        let ends_loop = |name: &Ident| !is_input && mentions(condition, name);
+        let takes_none = |stmt: &&Stmt| takes_no_time(context, routine, stmt, &ends_loop);
+        if waits_for_it && body.iter().all(takes_none) {
             let message = "a loop asks without a pause: WaitDI or WaitUntil wait for it";
+            findings.push(Finding::new(&RULE, stmt.span, message));
+        } else if matches!(condition.kind, ExprKind::Bool(true))
+            && body.iter().any(|stmt| is_question(stmt, &asks))
+            && body.iter().all(|stmt| is_question(stmt, &asks) || takes_none(stmt))
+        {
+            let message = "an endless loop asks for inputs in turn without a pause: WaitUntil waits for \
+                           any of them, and a WaitTime leaves time to other tasks";
             findings.push(Finding::new(&RULE, stmt.span, message));
         }
     }
@@ -59,10 +72,46 @@ fn reads_flag(context: &Context<'_>, routine: RoutineId, expr: &Expr) -> bool {
         || expr.parts().into_iter().any(|part| reads_flag(context, routine, part))
 }
 
-/// Whether statements neither write data nor do anything that takes time.
-fn takes_no_time(context: &Context<'_>, routine: RoutineId, body: &[Stmt]) -> bool {
-    body.iter().all(|stmt| {
-        matches!(stmt.kind, StmtKind::Call(_))
-            && context.flow.class(routine, stmt) == Class::NoEffect
-    })
+/// Whether an expression reads data.
+fn mentions(expr: &Expr, name: &Ident) -> bool {
+    matches!(&expr.kind, ExprKind::Ref(read) if read.key == name.key)
+        || expr.parts().into_iter().any(|part| mentions(part, name))
+}
+
+/// Whether a statement does something only where inputs ask for it.
+fn is_question(stmt: &Stmt, asks: &impl Fn(&Expr) -> bool) -> bool {
+    match &stmt.kind {
+        StmtKind::If { branches, otherwise } => {
+            otherwise.as_ref().is_none_or(Vec::is_empty) && branches.iter().all(|(it, _)| asks(it))
+        }
+        _ => false,
+    }
+}
+
+/// Whether a statement takes no time and writes nothing that ends the loop.
+fn takes_no_time(
+    context: &Context<'_>,
+    routine: RoutineId,
+    stmt: &Stmt,
+    ends_loop: &impl Fn(&Ident) -> bool,
+) -> bool {
+    match &stmt.kind {
+        StmtKind::Call(_) => context.flow.class(routine, stmt) == Class::NoEffect,
+        StmtKind::Assign { target, value } => {
+            is_calculated(value) && !target.base().is_some_and(ends_loop)
+        }
+        _ => false,
+    }
+}
+
+/// Whether a value comes from data, clocks and calculations alone.
+fn is_calculated(value: &Expr) -> bool {
+    match &value.kind {
+        ExprKind::Call(name, args) => {
+            let source = builtins::function(&name.key).map(|function| function.source);
+            matches!(source, Some(Source::Arguments | Source::State))
+                && args.iter().filter_map(Arg::value).all(is_calculated)
+        }
+        _ => value.parts().into_iter().all(is_calculated),
+    }
 }

@@ -1,7 +1,8 @@
 //! Two targets of a module are the same.
 //!
 //! ## What it does
-//! Finds robot targets of a module with the same value, both of which movements use.
+//! Finds robot targets of a module with the same value, both of which movements use: one finding for a
+//! module.
 //!
 //! ## Why it wastes energy
 //! Movements between them are movements to the same place that nobody sees; and once one of them
@@ -30,7 +31,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::context::Context;
-use super::super::rule::Finding;
+use super::super::rule::{Finding, MAX_RELATED};
 use super::super::site::parts;
 use crate::rapid::ir::exec::value_of;
 use crate::rapid::ir::hir::{DataKind, ExprKind};
@@ -51,26 +52,45 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             used.insert(id);
         }
     }
-    let mut known: BTreeMap<(usize, String), DataId> = BTreeMap::new();
+    // Values are compared as they are written out.
+    let mut same: BTreeMap<(usize, String), Vec<DataId>> = BTreeMap::new();
     for id in used {
         let data = context.program.data(id);
         let value = value_of(context.program, id).datum;
-        if data.type_name.key != "robtarget"
-            || is_placeholder(&value)
-            || value.first_unknown().is_some()
+        if data.type_name.key == "robtarget"
+            && !is_placeholder(&value)
+            && value.first_unknown().is_none()
         {
-            continue;
-        }
-        // Values are compared as they are written out.
-        let first = *known.entry((id.module, format!("{value:?}"))).or_insert(id);
-        if first != id {
-            let first = context.program.data(first);
-            let message = format!("{} is the same target as {}", data.name.text, first.name.text);
-            let finding = Finding::new(&RULE, data.name.span, message)
-                .with_related(first.name.span, "the same value");
-            findings.push(finding);
+            same.entry((data.name.span.file.0 as usize, format!("{value:?}")))
+                .or_default()
+                .push(id);
         }
     }
+    let mut of_file: BTreeMap<usize, Vec<(DataId, DataId)>> = BTreeMap::new();
+    for ((file, _), targets) in same {
+        let others = targets.iter().skip(1).map(|other| (targets[0], *other));
+        of_file.entry(file).or_default().extend(others);
+    }
+    findings.extend(of_file.values().filter_map(|pairs| duplicated(context, pairs)));
+}
+
+/// One finding for the pairs of a file: what wrote them is the cause.
+fn duplicated(context: &Context<'_>, pairs: &[(DataId, DataId)]) -> Option<Finding> {
+    let name = |id: DataId| &context.program.data(id).name;
+    let ((first, second), others) = pairs.split_first()?;
+    let more = match others.len() {
+        0 => String::new(),
+        count => format!(", and so are {count} others"),
+    };
+    let message =
+        format!("{} is the same target as {}{more}", name(*second).text, name(*first).text);
+    let finding = Finding::new(&RULE, name(*second).span, message)
+        .for_places(pairs.len())
+        .with_related(name(*first).span, "the same value");
+    let related = others.iter().take(MAX_RELATED);
+    Some(related.fold(finding, |finding, (first, other)| {
+        finding.with_related(name(*other).span, format!("the same as {}", name(*first).text))
+    }))
 }
 
 fn is_placeholder(value: &Datum) -> bool {

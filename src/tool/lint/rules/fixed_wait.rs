@@ -1,9 +1,9 @@
 //! The program waits for a fixed time beside an input or output that could tell when to go on.
 //!
 //! ## What it does
-//! Finds `WaitTime` of at least 0.5 s directly behind an output or directly before or behind a wait
-//! for an input. An output that is reset right behind the wait is a pulse or a process whose length is
-//! meant: it is left alone.
+//! Finds `WaitTime` of at least 0.5 s directly before or behind an output or a wait for an input: those
+//! beside one signal of a file are one finding. A `PulseDO` and an output that is reset right behind the
+//! wait are a pulse or a process whose length is meant: they are left alone.
 //!
 //! ## Why it wastes energy
 //! A fixed time is as long as the slowest case ever seen. The base load and the holding of the arm
@@ -34,11 +34,12 @@
 use std::collections::BTreeMap;
 
 use super::super::context::Context;
-use super::super::rule::Finding;
+use super::super::rule::{Finding, MAX_RELATED};
 use super::super::saving::Saving;
 use super::super::trace::Action;
 use crate::arm::robot::Model;
-use crate::rapid::text::Span;
+use crate::rapid::ir::exec::NO_END;
+use crate::rapid::text::{FileId, Span};
 use crate::retime::energy::EnergyParts;
 use crate::retime::motion::timeline::WaitBasis;
 
@@ -54,34 +55,47 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             waits.entry(wait.span).or_default().push(step);
         }
     }
+    // Waits for the same signal have one cause.
+    let mut of_signal: BTreeMap<(FileId, String), Vec<(Span, Vec<usize>)>> = BTreeMap::new();
     for (span, steps) in waits {
         let fixed = steps.iter().all(|step| is_fixed(context, *step));
-        let Some(signal) = beside(context, steps[0]).filter(|_| fixed) else { continue };
-        let seconds: f64 = steps.iter().map(|step| context.trace[*step].duration).sum();
-        let times = match steps.len() {
-            1 => String::new(),
-            times => format!(" {times} times"),
-        };
-        let joules = energy(context, &steps);
-        let cost = joules.map(|joules| {
-            let share = context.cycle.map_or(0.0, |it| it.account.total.energy_j());
-            format!(
-                "; {seconds:.1} s in a cycle take {joules:.1} J ({:.1} J a second, {:.1} % of the cycle)",
-                joules / seconds,
-                100.0 * joules / share
-            )
-        });
-        let message = format!(
-            "a fixed wait{times} beside {signal}: WaitDI on an input that tells when it is done ends \
-             sooner{}",
-            cost.unwrap_or_default()
-        );
-        let finding = Finding::new(&RULE, span, message)
-            .with_saving("WaitDI in place of WaitTime", None::<Saving>)
-            .with_at_stake(joules)
-            .with_assumption(format!("the wait is for {signal}"));
-        findings.push(finding);
+        if let Some(signal) = beside(context, steps[0]).filter(|_| fixed) {
+            of_signal.entry((span.file, signal.to_lowercase())).or_default().push((span, steps));
+        }
     }
+    findings.extend(of_signal.into_values().map(|waits| fixed_wait(context, &waits)));
+}
+
+/// A finding for the waits beside a signal, each with its executions.
+fn fixed_wait(context: &Context<'_>, waits: &[(Span, Vec<usize>)]) -> Finding {
+    let steps: Vec<usize> = waits.iter().flat_map(|(_, steps)| steps.iter().copied()).collect();
+    let signal = beside(context, steps[0]).unwrap_or_default();
+    let seconds: f64 = steps.iter().map(|step| context.trace[*step].duration).sum();
+    let times = match steps.len() {
+        1 => String::new(),
+        times => format!(" {times} times"),
+    };
+    let joules = energy(context, &steps);
+    let cost = joules.map(|joules| {
+        let share = context.cycle.map_or(0.0, |it| it.account.total.energy_j());
+        format!(
+            "; {seconds:.1} s in a cycle take {joules:.1} J ({:.1} J a second, {:.1} % of the cycle)",
+            joules / seconds,
+            100.0 * joules / share
+        )
+    });
+    let message = format!(
+        "a fixed wait{times} beside {signal}: WaitDI on an input that tells when it is done ends \
+         sooner{}",
+        cost.unwrap_or_default()
+    );
+    let finding = Finding::new(&RULE, waits[0].0, message)
+        .with_saving("WaitDI in place of WaitTime", None::<Saving>)
+        .with_at_stake(joules)
+        .with_assumption(format!("the wait is for {signal}"))
+        .for_places(waits.len());
+    let related = waits.iter().skip(1).take(MAX_RELATED);
+    related.fold(finding, |finding, (span, _)| finding.with_related(*span, "and here"))
 }
 
 /// Whether a step is a `WaitTime` of some length whose length is not that of a pulse.
@@ -89,22 +103,25 @@ fn is_fixed(context: &Context<'_>, step: usize) -> bool {
     let Action::Wait(wait, _) = &context.trace[step].what else { return false };
     let is_pulse = || {
         let [before, after] = [step.wrapping_sub(1), step + 1].map(|at| output(context, at));
-        before.is_some() && before == after
+        before.is_some() && (before == after || is_pulse_instruction(context, step - 1))
     };
     wait.instruction.eq_ignore_ascii_case("waittime")
         && context.trace[step].duration >= MIN_WAIT
         && !is_pulse()
 }
 
-/// The signal that a wait is beside: an output right before it, or an input that is waited for right
-/// before or behind it.
+/// The signal that a wait is beside: an output right before it, an input that is waited for right before or
+/// behind it, or else an output right behind it.
 fn beside(context: &Context<'_>, step: usize) -> Option<String> {
     let input = |at: usize| match &context.trace.get(at)?.what {
         Action::Wait(wait, _) => wait.signal.as_ref().map(ToString::to_string),
         _ => None,
     };
     let before = step.checked_sub(1);
-    before.and_then(|at| output(context, at).or_else(|| input(at))).or_else(|| input(step + 1))
+    before
+        .and_then(|at| output(context, at).or_else(|| input(at)))
+        .or_else(|| input(step + 1))
+        .or_else(|| output(context, step + 1))
 }
 
 fn output(context: &Context<'_>, step: usize) -> Option<String> {
@@ -114,9 +131,16 @@ fn output(context: &Context<'_>, step: usize) -> Option<String> {
     }
 }
 
-/// What the waits take, J.
+/// Whether an output goes back by itself after the time of its pulse.
+fn is_pulse_instruction(context: &Context<'_>, step: usize) -> bool {
+    matches!(&context.trace[step].what, Action::Output(it) if it.instruction.eq_ignore_ascii_case("pulsedo"))
+}
+
+/// What the waits take in a cycle, J; none for a program that does not come to its end.
 fn energy(context: &Context<'_>, steps: &[usize]) -> Option<f64> {
-    let cycle = context.cycle.filter(|_| context.model.is_some_and(Model::has_dynamics))?;
+    let is_whole = !context.unresolved.iter().any(|note| note.reason == NO_END);
+    let has_energy = is_whole && context.model.is_some_and(Model::has_dynamics);
+    let cycle = context.cycle.filter(|_| has_energy)?;
     let of = |step: &usize| {
         let (event, _) = context.trace[*step].event?;
         Some(cycle.account.events.get(event)?.iter().map(EnergyParts::energy_j).sum::<f64>())

@@ -1,8 +1,8 @@
 //! An output is set behind a movement that has a zone: the gripper acts before the robot stands.
 //!
 //! ## What it does
-//! Finds movements with a zone behind which, on every way, an output is set and then a wait follows,
-//! or a line behind which the tool goes back the way it came: a grip, which needs a robot that stands.
+//! Finds lines and arcs with a zone behind which, on every way, an output is set and then a wait follows,
+//! or behind which the tool goes back the way it came: a grip, which needs a robot that stands.
 //!
 //! ## Why it wastes energy
 //! The controller sets the output when the tool reaches the zone, not when it is at the point. The
@@ -33,11 +33,13 @@
 //!
 //! ## Assumptions
 //! Where the robot waits right behind an output, or goes back, it grips, lets go or works there.
-//! Outputs that are set in passing, with a way that goes on, are none of this.
+//! Outputs that are set in passing, with a way that goes on, are none of this, and neither are joint
+//! movements and outputs before a `WaitRob`.
 
 use super::super::context::Context;
 use super::super::flow::{Next, Place, Through};
 use super::super::rule::Finding;
+use super::super::statements::called_name;
 
 rule!("EW105", "grip-in-passing", Stops, Text, Warning, "grip_in_passing.rs");
 
@@ -47,7 +49,7 @@ const MAX_TURN: f64 = 2.36;
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     for (index, site) in context.sites.iter().enumerate() {
         let passes = site.facts.zone.is_some_and(|zone| !zone.fine);
-        if !passes || !site.is_plain() || !site.reachable {
+        if !passes || !site.is_plain() || !site.is_linear() || !site.reachable {
             continue;
         }
         let next = context.next(index, Through::NoEffect);
@@ -60,10 +62,10 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         };
         let waits = |place: &Place| {
             let behind = context.flow.following(*place, Through::Outputs);
-            !behind.is_empty() && behind.iter().all(|next| matches!(next, Next::Wait(_)))
+            !behind.is_empty() && behind.iter().all(|next| is_process_wait(context, *next))
         };
         let goes_back = || context.corner(index).is_some_and(|corner| corner.turn > MAX_TURN);
-        if outputs.iter().all(waits) || site.is_linear() && goes_back() {
+        if outputs.iter().all(waits) || goes_back() {
             let written = site.zone.map(|zone| context.text(zone.span)).unwrap_or_default();
             let message = format!(
                 "the output behind this {} comes when the tool enters {written}, before the robot \
@@ -73,4 +75,11 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             findings.push(Finding::new(&RULE, site.stmt.span, message));
         }
     }
+}
+
+/// Whether a next action waits for a process; `WaitRob` only makes the robot stand.
+fn is_process_wait(context: &Context<'_>, next: Next) -> bool {
+    let Next::Wait(place) = next else { return false };
+    let name = context.flow.statement(place).and_then(called_name);
+    name.is_none_or(|name| name.key != "waitrob")
 }

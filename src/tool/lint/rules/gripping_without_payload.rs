@@ -39,20 +39,30 @@
 //! ## Assumptions
 //! An output that is set at one stop and reset at another, where the tool comes out the way it
 //! went in, with a wait at one of them and a joint movement or a fast line between, holds a part.
-//! What is set along a path (a weld, a bead of glue) or in passing is none. Names of outputs say
-//! nothing.
+//! What is set along a path (a weld, a bead of glue) or in passing is none, and a tool of another mass
+//! behind the grip has the part's mass. Names of outputs say nothing: a lamp or a signal to another machine
+//! may look the same, so the confidence is low.
 
 use super::super::context::Context;
 use super::super::outputs::{carries, resets};
 use super::super::rule::Finding;
 use super::super::trace::Action;
 use super::dead_procedure::calls_others;
+use crate::rapid::ir::movement::Movement;
 use crate::rapid::ir::program::RoutineId;
 
 rule!("EW502", "gripping-without-payload", Load, Text, Info, "gripping_without_payload.rs");
 
+/// Whether the robot moves with another tool behind a grip than before: its mass has the part's.
+fn takes_another_tool(context: &Context<'_>, on: usize, off: usize) -> bool {
+    let mass = |movement: &Movement| movement.tool.load.mass;
+    let before = context.trace[..on].iter().rev().find_map(|done| done.what.movement());
+    let mut behind = context.trace[on..off].iter().filter_map(|done| done.what.movement());
+    before.is_some_and(|before| behind.any(|it| mass(it) != mass(before)))
+}
+
 /// Whether the program may run a routine: it is reached from its start, or calls leave open what runs.
-fn may_run(context: &Context<'_>, routine: RoutineId) -> bool {
+pub(super) fn may_run(context: &Context<'_>, routine: RoutineId) -> bool {
     let Some(entry) = context.entry else { return true };
     context.flow.has_late_calls()
         || calls_others(context)
@@ -68,20 +78,21 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     }
     // The program lacks it as a whole: one remark is enough.
     let resets = resets(context);
-    let Some((step, _)) = resets.into_iter().find(|(on, off)| carries(context, *on, *off)) else {
-        return;
+    let grips = |(on, off): &(usize, usize)| {
+        carries(context, *on, *off) && !takes_another_tool(context, *on, *off)
     };
+    let Some((step, _)) = resets.into_iter().find(grips) else { return };
     let Action::Output(output) = &context.trace[step].what else { return };
     let missing = match loads.first() {
         Some(_) => "GripLoad stands only in code that nothing calls",
         None => "no GripLoad says what it weighs",
     };
     let message = format!(
-        "{} is set where the tool goes in and out, and reset at another such place: a part is \
-         carried, but {missing}",
+        "{} is set where the tool goes in and out, and reset at another such place: a part seems \
+         to be carried, but {missing}",
         output.signal
     );
-    let finding = Finding::new(&RULE, output.span, message);
+    let finding = Finding::new(&RULE, output.span, message).doubtful();
     findings.push(match loads.first() {
         Some((_, stmt, _)) => finding.with_related(stmt.span, "nothing calls this"),
         None => finding,

@@ -26,12 +26,14 @@
 //!
 //! ## Assumptions
 //! A target of several movements is changed for all of them; one that something else uses too is
-//! left alone.
+//! left alone. Nothing is told where a line between it and the next joint movement is not simulated: its
+//! configuration might not agree with the changed one.
 
 use std::collections::BTreeSet;
 
 use super::super::context::Context;
 use super::super::edits::{change_movement, replace};
+use super::super::flow::{Next, Through};
 use super::super::rule::Finding;
 use super::super::site::Site;
 use super::super::words;
@@ -60,6 +62,9 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
                 continue;
             }
             let Some((literal, spans)) = literal(context, site, part) else { continue };
+            if !spans.iter().all(|span| lines_behind_are_simulated(context, *span)) {
+                continue;
+            }
             let quarters = if turned > 0.0 { -WHOLE } else { WHOLE };
             let change = |step: &Step| with_conf(step, part, quarters);
             let Ok(Some(saving)) = context.evaluate(&spans, &change) else { continue };
@@ -80,6 +85,30 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             findings.push(finding);
         }
     }
+}
+
+/// Whether all lines from a movement to the next joint movement are simulated: their configurations
+/// have to agree with its own.
+fn lines_behind_are_simulated(context: &Context<'_>, span: Span) -> bool {
+    let mut open: Vec<usize> = context.site_of(span).into_iter().collect();
+    let mut seen = BTreeSet::new();
+    while let Some(site) = open.pop() {
+        for next in context.next(site, Through::All) {
+            let Next::Move(place) = next else { continue };
+            let Some(next) = context.sites.iter().position(|it| it.place == place) else {
+                return false;
+            };
+            if !context.sites[next].is_linear() || !seen.insert(next) {
+                continue;
+            }
+            let mut runs = context.sites[next].executions.iter().map(|step| context.record(*step));
+            if runs.len() == 0 || runs.any(|it| it.is_none_or(|(run, ..)| run.problem.is_some())) {
+                return false;
+            }
+            open.push(next);
+        }
+    }
+    true
 }
 
 /// The farthest that an axis turns in an execution of a movement, rad, and the component of the

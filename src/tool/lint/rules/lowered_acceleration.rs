@@ -29,7 +29,7 @@
 //!
 //! ## Safety
 //! Unsafe: a part may be held so weakly that it needs the softer start. Without a fix where a process
-//! keeps the setting.
+//! keeps the setting or a part is carried.
 //!
 //! ## Assumptions
 //! No process asks for the softer start.
@@ -67,6 +67,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             .for_places(region.free.len())
             .with_assumption("no process asks for the softer start");
         let edits = [acceleration, ramp].map(|argument| replace(argument, "100"));
-        findings.push(finding.with_unsafe_fix(edits.into_iter().filter(|_| !region.spares)));
+        findings
+            .push(finding.with_unsafe_fix(edits.into_iter().filter(|_| region.may_go(context))));
     }
 }

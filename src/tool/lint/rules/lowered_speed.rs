@@ -27,7 +27,7 @@
 //!
 //! ## Safety
 //! Unsafe: everything is faster; the override may be left from a test, or be meant. Without a fix
-//! where a process keeps the setting.
+//! where a process keeps the setting or a part is carried.
 //!
 //! ## Assumptions
 //! Programmed speeds are those that the process wants.
@@ -75,6 +75,6 @@ fn raised(
         .with_saving(change, saving)
         .for_places(region.free.len())
         .with_assumption("the programmed speeds are those that are wanted");
-    let edit = (!region.spares).then(|| replace(argument.span, "100"));
+    let edit = region.may_go(context).then(|| replace(argument.span, "100"));
     Some(finding.with_unsafe_fix(edit))
 }

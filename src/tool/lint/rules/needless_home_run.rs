@@ -2,9 +2,9 @@
 //!
 //! ## What it does
 //! Finds movements to the place at which the program starts, between two other movements, where
-//! nothing is done at home, no wait and no output, but something before it and something behind it. The
-//! movement before and the two behind it are next to no work either: where home is the lift behind a grip
-//! or the approach to the next one, nothing is told.
+//! nothing is done at home, no wait and no output, but something before it and something behind it. Home
+//! and the movement behind it are next to no work: where home is the lift behind a grip or the approach to
+//! the next one, nothing is told.
 //! Where a procedure that does nothing else goes home, each call of it is looked at by itself. Without
 //! a robot at least two of them in a cycle are needed.
 //!
@@ -100,12 +100,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     };
     let visits = moves.iter().filter(|step| idle(**step)).count();
     for (index, site) in context.sites.iter().enumerate() {
-        // A pose that is passed is a point on the way.
-        let joint = match site.signature.form {
-            MoveForm::AbsJ => true,
-            MoveForm::Joint => site.is_stop(),
-            _ => false,
-        };
+        let joint = matches!(site.signature.form, MoveForm::AbsJ | MoveForm::Joint);
         if !joint || !site.is_plain() || site.executions.is_empty() {
             continue;
         }

@@ -32,32 +32,46 @@
 //! Without a fix: the process determines where the part is released.
 //!
 //! ## Assumptions
-//! The program is complete: it has its entry.
+//! The program is complete: it has its entry. Where there are several payloads and none of them is zero, the
+//! lightest is the empty gripper.
 
 use super::super::context::Context;
+use super::super::flow::Place;
 use super::super::rule::Finding;
 use super::super::site::parts;
 use super::super::statements::first_argument;
+use super::gripping_without_payload::may_run;
+use crate::rapid::ir::hir::{Call, Stmt};
+use crate::rapid::ir::program::RoutineId;
 
 rule!("EW503", "payload-never-reset", Load, Text, Warning, "payload_never_reset.rs");
 
 /// Loads up to this are none, kg.
-const MAX_EMPTY: f64 = 0.01;
+pub(super) const NO_LOAD: f64 = 0.01;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     if context.entry.is_none() || context.flow.has_late_calls() {
         return;
     }
-    let calls = context.calls("gripload");
-    let masses = calls.iter().map(|(place, _, call)| {
-        let load = context.constant(place.0, first_argument(call)?)?;
-        parts(&load)?.first()?.num()
-    });
+    let mut calls = context.calls("gripload");
+    calls.retain(|(place, ..)| may_run(context, place.0));
+    let mass = |(place, _, call): &(Place, &Stmt, &Call)| payload_kg(context, place.0, call);
     // A load that is not known may be none.
-    let Some(masses) = masses.collect::<Option<Vec<f64>>>() else { return };
-    if masses.is_empty() || masses.iter().any(|mass| *mass <= MAX_EMPTY) {
+    let Some(masses) = calls.iter().map(mass).collect::<Option<Vec<f64>>>() else { return };
+    if masses.is_empty() || masses.iter().any(|mass| *mass <= NO_LOAD) || has_gripper(&masses) {
         return;
     }
     let message = "a payload is set here, and no GripLoad load0 takes it off again";
     findings.push(Finding::new(&RULE, calls[0].1.span, message));
+}
+
+/// The mass that a `GripLoad` states, kg, if it is known.
+pub(super) fn payload_kg(context: &Context<'_>, routine: RoutineId, call: &Call) -> Option<f64> {
+    let load = context.constant(routine, first_argument(call)?)?;
+    parts(&load)?.first()?.num()
+}
+
+/// Whether payloads have the gripper's mass in them: several, and none of them is zero.
+pub(super) fn has_gripper(masses: &[f64]) -> bool {
+    masses.iter().all(|mass| *mass > NO_LOAD) && masses.iter().any(|mass| *mass != masses[0])
 }

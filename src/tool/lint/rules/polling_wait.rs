@@ -52,7 +52,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     for PollingLoop { routine, stmt, condition, body } in polling_loops(context) {
         if asks_outside(condition)
             && !context.flow.data_names.has_only_data(routine, condition)
-            && only_waits(context, routine, body)
+            && only_waits(context, routine, &body)
         {
             let message =
                 "a loop polls with WaitTime: WaitDI or WaitUntil wait for the input itself";
@@ -66,7 +66,7 @@ pub(super) struct PollingLoop<'h> {
     pub(super) routine: RoutineId,
     pub(super) stmt: &'h Stmt,
     pub(super) condition: &'h Expr,
-    pub(super) body: &'h [Stmt],
+    pub(super) body: Vec<&'h Stmt>,
 }
 
 /// The loops of a program, also those that are made with a jump.
@@ -75,8 +75,7 @@ pub(super) fn polling_loops<'h>(context: &Context<'h>) -> Vec<PollingLoop<'h>> {
     for (routine, all) in context.program.routines() {
         for block in all_blocks(all) {
             for (index, stmt) in block.iter().enumerate() {
-                let before = index.checked_sub(1).map(|before| &block[before]);
-                if let Some((condition, body)) = polling_loop(stmt, before) {
+                if let Some((condition, body)) = polling_loop(stmt, &block[..index]) {
                     loops.push(PollingLoop { routine, stmt, condition, body });
                 }
             }
@@ -97,31 +96,27 @@ pub(super) fn all_blocks(routine: &Routine) -> Vec<&Block> {
 }
 
 /// The condition and the statements of a loop, also of one that is made with a jump.
-pub(super) fn polling_loop<'h>(
-    stmt: &'h Stmt,
-    before: Option<&'h Stmt>,
-) -> Option<(&'h Expr, &'h [Stmt])> {
+fn polling_loop<'h>(stmt: &'h Stmt, before: &'h [Stmt]) -> Option<(&'h Expr, Vec<&'h Stmt>)> {
     match &stmt.kind {
-        StmtKind::While { condition, body } => Some((condition, body.as_slice())),
+        StmtKind::While { condition, body } => Some((condition, body.iter().collect())),
         StmtKind::If { branches, otherwise: None } => jump_back(branches, before),
         _ => None,
     }
 }
 
-/// The condition and the rest of the one branch of an `IF` that ends with a jump to the label
-/// right before it.
+/// The condition of the one branch of an `IF` that ends with a jump back, and all statements from the
+/// label to the jump.
 fn jump_back<'h>(
     branches: &'h [(Expr, Block)],
-    before: Option<&Stmt>,
-) -> Option<(&'h Expr, &'h [Stmt])> {
+    before: &'h [Stmt],
+) -> Option<(&'h Expr, Vec<&'h Stmt>)> {
     let [(condition, body)] = branches else { return None };
-    let (StmtKind::Label(label), (last, rest)) = (&before?.kind, body.split_last()?) else {
-        return None;
-    };
-    match &last.kind {
-        StmtKind::Goto(to) if to.key == label.key => Some((condition, rest)),
-        _ => None,
-    }
+    let (last, rest) = body.split_last()?;
+    let StmtKind::Goto(to) = &last.kind else { return None };
+    let is_label =
+        |stmt: &Stmt| matches!(&stmt.kind, StmtKind::Label(label) if label.key == to.key);
+    let label = before.iter().rposition(is_label)?;
+    Some((condition, before[label + 1..].iter().chain(rest).collect()))
 }
 
 /// Whether a condition has the form of a question for an input: a level of a signal, or a function that
@@ -149,12 +144,13 @@ fn is_level(expr: &Expr) -> bool {
     }
 }
 
-fn only_waits(context: &Context<'_>, routine: RoutineId, body: &[Stmt]) -> bool {
+fn only_waits(context: &Context<'_>, routine: RoutineId, body: &[&Stmt]) -> bool {
     let is_wait = |stmt: &Stmt| called_name(stmt).is_some_and(|name| name.key == "waittime");
     // A counter or a jump may end the loop.
     let no_effect = |stmt: &Stmt| {
         matches!(stmt.kind, StmtKind::Call(_))
             && context.flow.class(routine, stmt) == Class::NoEffect
     };
-    body.iter().any(is_wait) && body.iter().all(|stmt| is_wait(stmt) || no_effect(stmt))
+    body.iter().any(|stmt| is_wait(stmt))
+        && body.iter().all(|stmt| is_wait(stmt) || no_effect(stmt))
 }

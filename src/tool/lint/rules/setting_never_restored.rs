@@ -2,7 +2,7 @@
 //!
 //! ## What it does
 //! Finds `AccSet` and `VelSet` below 100 % behind the first movements of a program that never
-//! sets them back.
+//! sets them back: one finding for each of the two.
 //!
 //! ## Why it wastes energy
 //! From then on everything is slower, in the next cycle also what was at full speed in the first:
@@ -35,7 +35,7 @@
 
 use super::super::context::Context;
 use super::super::regions::percent;
-use super::super::rule::Finding;
+use super::super::rule::{Finding, MAX_RELATED};
 use crate::rapid::ir::movement::{Movement, Settings};
 
 rule!("EW601", "setting-never-restored", Settings, Text, Warning, "setting_never_restored.rs");
@@ -61,10 +61,13 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         if values.is_none_or(|values| values.iter().any(|value| *value >= 100.0)) {
             continue;
         }
-        for (_, stmt, _) in calls {
-            let message = "lowered here for all that follows, and in the next cycle for all: \
-                           nothing sets it back to 100 %";
-            findings.push(Finding::new(&RULE, stmt.span, message));
-        }
+        let mut spans = calls.iter().map(|(_, stmt, _)| stmt.span);
+        let Some(first) = spans.next() else { continue };
+        let message = "lowered here for all that follows, and in the next cycle for all: \
+                       nothing sets it back to 100 %";
+        let finding = Finding::new(&RULE, first, message).for_places(calls.len());
+        let related = spans.take(MAX_RELATED);
+        findings
+            .push(related.fold(finding, |finding, span| finding.with_related(span, "and here")));
     }
 }

@@ -1,9 +1,9 @@
 //! The robot travels through free air at a speed at which it takes more energy than at a higher one.
 //!
 //! ## What it does
-//! Finds joint movements and lines that the programmed speed limits, of at least 200 mm/s, and looks
+//! Finds joint movements and lines that the programmed speed limits, lines of at least 200 mm/s, and looks
 //! for the predefined speed at which they take fewest joules. Movements of a procedure with the same
-//! written speed are one finding.
+//! written speed are one finding. While a speed override is below 100 % nothing is told: EW603 comes first.
 //!
 //! ## Why it wastes energy
 //! The base load, the open brakes and the holding of the arm run for as long as the way takes. Slow
@@ -27,13 +27,15 @@
 //!
 //! ## Safety
 //! Unsafe: the path stays, but everything on it comes faster: a part may be held too weakly, hoses
-//! may swing, and the speed may be meant, as where people stand near.
+//! may swing, and the speed may be meant, as where people stand near. Without a fix, and with low
+//! confidence, where a part is carried or a joint movement is slower than 200 mm/s.
 //!
 //! ## Assumptions
-//! A process is slower than 200 mm/s, or has an output that is on for lines and arcs alone. Lines next
-//! to work (an output, a wait, another tool or load), lines along the tool's axis and lines of less than
-//! 150 mm are ways into or out of it, or contours, and keep their speed, and so do joint movements of less than 150 mm next to
-//! work.
+//! A line slower than 200 mm/s is a process, and so is what has an output that is on for lines and arcs
+//! alone. Lines next to work (an output, a wait, another tool or load) or next to a movement slower than
+//! 200 mm/s, lines along the tool's axis, four and more lines in a row and lines of less than 150 mm are
+//! ways into or out of it, or contours, and keep their speed. So do joint movements of less than 150 mm
+//! that are next to work or slower than 200 mm/s.
 
 use std::collections::BTreeMap;
 
@@ -45,6 +47,7 @@ use super::super::rule::{Finding, MAX_RELATED};
 use super::super::saving::Saving;
 use super::super::settings::THRESHOLD_J;
 use crate::rapid::builtins::MoveForm;
+use crate::rapid::ir::movement::Settings;
 use crate::rapid::ir::program::RoutineId;
 use crate::rapid::text::Span;
 use crate::retime::motion::pace::Pace;
@@ -77,12 +80,22 @@ fn travels(context: &Context<'_>, index: usize) -> bool {
     };
     let long = || site.executions.iter().all(|step| way(context, *step).norm() >= MIN_WAY);
     let goes_in = || site.executions.iter().any(|step| is_along_tool(context, *step));
+    // A lowered override is a finding of its own: without it the speed may be right.
+    let full = |settings: &Settings| settings.speed_override >= 1.0 && settings.refresh >= 1.0;
+    let free = if site.is_linear() {
+        let contour = context.is_in_row_of_lines(index) || context.is_next_to_slow(index);
+        !(context.is_process(index) || context.is_next_to_work(index) || contour || goes_in())
+    } else {
+        !context.is_in_process(index)
+    };
+    let short_is_free =
+        !site.is_linear() && !context.is_next_to_work(index) && !context.is_process(index);
     site.is_plain()
         && site.signature.form != MoveForm::Circular
         && site.executions.iter().any(is_limited)
-        && !context.is_process(index)
-        && !(site.is_linear() && (context.is_next_to_work(index) || goes_in()))
-        && ((!site.is_linear() && !context.is_next_to_work(index)) || long())
+        && context.always(index, full)
+        && free
+        && (short_is_free || long())
 }
 
 /// Whether a movement goes into or out of something in an execution: along the tool's axis.
@@ -100,8 +113,8 @@ fn way(context: &Context<'_>, step: usize) -> Vector3<f64> {
     ends.map_or_else(Vector3::zeros, |(from, to)| to.translation.vector - from.translation.vector)
 }
 
-fn faster_travel(context: &Context<'_>, sites: &[usize]) -> Option<Finding> {
-    let sites: Vec<_> = sites.iter().map(|site| &context.sites[*site]).collect();
+fn faster_travel(context: &Context<'_>, indices: &[usize]) -> Option<Finding> {
+    let sites: Vec<_> = indices.iter().map(|site| &context.sites[*site]).collect();
     let spans: Vec<Span> = sites.iter().map(|site| site.stmt.span).collect();
     let speeds = sites.iter().map(|site| site.facts.speed.map(|speed| speed.tcp));
     let fastest = speeds.collect::<Option<Vec<f64>>>()?.into_iter().fold(0.0, f64::max);
@@ -131,6 +144,10 @@ fn faster_travel(context: &Context<'_>, sites: &[usize]) -> Option<Finding> {
         .with_assumption("no part, hose or person needs the lower speed");
     for span in spans.iter().skip(1).take(MAX_RELATED) {
         finding = finding.with_related(*span, "and here");
+    }
+    // Faster with a part, or where the speed is that of a process, only who knows the cell can say.
+    if indices.iter().any(|site| context.carries_part(*site) || context.is_process(*site)) {
+        return Some(finding.doubtful());
     }
     let edits = sites.iter().map(|site| replace(site.speed.span, &name));
     Some(finding.with_unsafe_fix(edits))

@@ -1,8 +1,7 @@
-//! The robot stops again and again only to set an output.
+//! The robot stops only to set an output.
 //!
 //! ## What it does
-//! Finds stop points behind which outputs are set and the robot moves on at once, without a wait,
-//! where that happens at least twice in the program or in a cycle.
+//! Finds stop points behind which outputs are set and the robot moves on at once, without a wait.
 //!
 //! ## Why it wastes energy
 //! The arm is braked and accelerated anew for a signal that `MoveLDO`, `MoveJDO` or `TriggL` can
@@ -32,12 +31,12 @@
 //!
 //! ## Assumptions
 //! The process does not need a robot that stands. Points at which the tool turns back are taken
-//! for gripping and left alone, and so are movements below 200 mm/s. The confidence is low.
+//! for gripping and left alone, and so are movements of a process (below 200 mm/s, or with an output on
+//! for lines alone), before it and behind it. The confidence is low.
 
 use super::super::context::Context;
 use super::super::edits::zone_within;
 use super::super::flow::{Next, Through};
-use super::super::purpose::PROCESS_SPEED;
 use super::super::rule::Finding;
 use super::super::stops::{are_plain, is_ordinary, propose_zone};
 
@@ -49,17 +48,10 @@ const MAX_TURN: f64 = 2.0;
 const SHARE: f64 = 0.3;
 /// Largest zone that is proposed, m.
 const MAX_ZONE: f64 = 0.015;
-/// How often it has to happen.
-const MIN_EXECUTIONS: usize = 2;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     let stops: Vec<usize> =
         (0..context.sites.len()).filter(|index| stops_for_output(context, *index)).collect();
-    let times: usize =
-        stops.iter().map(|index| context.sites[*index].executions.len().max(1)).sum();
-    if times < MIN_EXECUTIONS {
-        return;
-    }
     for index in stops {
         let Some(corner) = context.corner(index).filter(|it| it.turn <= MAX_TURN) else { continue };
         let Some(zone) = zone_within((SHARE * corner.room()).min(MAX_ZONE)) else { continue };
@@ -75,14 +67,13 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
 
 fn stops_for_output(context: &Context<'_>, index: usize) -> bool {
     let site = &context.sites[index];
-    let slow = site.facts.speed.is_none_or(|speed| speed.tcp < PROCESS_SPEED);
-    if !site.is_stop() || !is_ordinary(context, site) || slow {
+    if !site.is_stop() || !is_ordinary(context, site) || context.is_process(index) {
         return false;
     }
     let next = context.next(index, Through::NoEffect);
     !next.is_empty()
         && next.iter().all(|next| matches!(next, Next::Output(_)))
-        && context
-            .next_moves(index, Through::Outputs)
-            .is_some_and(|next| are_plain(context, site, &next))
+        && context.next_moves(index, Through::Outputs).is_some_and(|next| {
+            are_plain(context, site, &next) && !next.iter().any(|it| context.is_process(*it))
+        })
 }

@@ -29,28 +29,30 @@
 //! ## Assumptions
 //! A payload is gripped by something that has a mass. Joint movements go where they say whatever
 //! the tool is, but take its load: they count too. Movements without a part, as to a pose for
-//! transport, are left alone.
+//! transport, are left alone. Where there are several payloads and none of them is zero, they have the
+//! gripper's mass in them.
 
 use std::collections::BTreeSet;
 
 use super::super::context::Context;
+use super::super::flow::Place;
 use super::super::rule::Finding;
-use super::super::site::parts;
-use super::super::statements::first_argument;
+use super::payload_never_reset::{NO_LOAD, has_gripper, payload_kg};
 
 rule!("EW504", "tool0-while-gripping", Load, Text, Warning, "tool0_while_gripping.rs");
 
-/// Loads up to this are none, kg.
-const NONE: f64 = 0.01;
-
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
+    let calls = context.calls("gripload");
+    let masses: Vec<(Place, f64)> = calls
+        .iter()
+        .filter_map(|(place, _, call)| Some((*place, payload_kg(context, place.0, call)?)))
+        .collect();
+    if has_gripper(&masses.iter().map(|(_, mass)| *mass).collect::<Vec<f64>>()) {
+        return;
+    }
     let mut carrying = BTreeSet::new();
-    for (place, _, call) in context.calls("gripload") {
-        let load = first_argument(call).and_then(|load| context.constant(place.0, load));
-        let mass = load.as_ref().and_then(|load| parts(load)?.first()?.num());
-        if mass.is_some_and(|mass| mass > NONE) {
-            carrying.extend(context.flow.in_force(place, "gripload").movements);
-        }
+    for (place, _) in masses.into_iter().filter(|(_, mass)| *mass > NO_LOAD) {
+        carrying.extend(context.flow.in_force(place, "gripload").movements);
     }
     let bare = context.sites.iter().filter(|site| {
         site.tool_key() == Some("tool0") && site.reachable && carrying.contains(&site.place)
