@@ -23,6 +23,7 @@
 
 use super::cone::{Affine, ConeProgram, ConeSolution, ConeStatus};
 use super::energy_costs::{IntervalCost, Layout, Root, Scale, mean_root};
+use super::energy_interior::{EndRow, EnergyProgram};
 use super::path_energy::{EnergyModel, evaluate};
 use crate::retime::motion::timing::grid::PathGrid;
 use crate::retime::motion::timing::limits::{PathLimits, rows};
@@ -159,6 +160,65 @@ impl<'a> Programs<'a> {
         None
     }
 
+    /// Solves the program with the exact √b from the profile `start`, and adds rows until none is violated.
+    /// None if the method does not converge.
+    pub(super) fn interior(&mut self, start: &[f64]) -> Option<Step> {
+        let square = self.speed * self.speed;
+        let start: Vec<f64> = start.iter().map(|b| b / square).collect();
+        for _ in 0..MAX_ROUNDS {
+            let rows = self.end_rows();
+            let program = EnergyProgram { costs: &self.costs, rows, most: 1.0 - MARGIN };
+            let solution = program.solve(&start)?;
+            let b: Vec<f64> = solution.b.iter().map(|b| b * square).collect();
+            let tangent = Root::Tangent(&[]);
+            if !self.broken(&b, tangent) {
+                let energy = solution.cost * self.unit;
+                let marginal = solution.time * self.unit / self.duration;
+                return Some(Step { b, energy, bound: energy, excess: 0.0, marginal });
+            }
+            self.activate(&b, NEAR);
+        }
+        None
+    }
+
+    /// The active rows, and the lost braking works as soft rows.
+    fn end_rows(&self) -> Vec<EndRow> {
+        let n = self.grid.intervals();
+        let square = self.speed * self.speed;
+        let hard = f64::INFINITY;
+        let mut rows = Vec::new();
+        for (k, (max, active)) in self.b_max.iter().enumerate().take(n).skip(1) {
+            if *active {
+                let (linear, constant) = ([1.0 / max, 0.0], -(1.0 - MARGIN));
+                rows.push(EndRow { interval: k, linear, root: [0.0; 2], constant, price: hard });
+            }
+        }
+        for limit in self.limits[0].iter().filter(|limit| limit.active) {
+            let (k, Row { u, b, root, constant }) = (limit.interval, limit.row);
+            let per_u = limit.sign * u * square * 0.5 / self.grid.delta(k);
+            let shares = [1.0 - limit.at, limit.at];
+            let own = shares.map(|share| share * limit.sign * b * square);
+            rows.push(EndRow {
+                interval: k,
+                linear: [own[0] - per_u, own[1] + per_u],
+                root: shares.map(|share| share * limit.sign * root * self.speed),
+                constant: limit.sign * constant - (1.0 - MARGIN),
+                price: hard,
+            });
+        }
+        for (interval, cost) in self.costs.iter().enumerate() {
+            let shares = mean_root(interval, n).map(|(_, share)| share);
+            rows.extend(cost.brakes.iter().map(|([x, y, rest], factor)| EndRow {
+                interval,
+                linear: [-x, -y],
+                root: shares.map(|share| -factor * share),
+                constant: -rest,
+                price: 1.0,
+            }));
+        }
+        rows
+    }
+
     fn read(
         &self,
         layout: &Layout,
@@ -245,11 +305,12 @@ impl<'a> Programs<'a> {
             program.rotated_cone(&d, &speeds, vec![Affine::constant(1.0)]);
             time.add(Some(layout.d(k)), cost.time);
             program.minimize(&d.clone().times(cost.base));
-            program.minimize(&cost.cross);
+            program.minimize(&layout.affine(k, cost.cross));
             if let Some(e) = layout.copper(k) {
                 let e = Affine::default().plus(Some(e), 1.0);
                 program.minimize(&e);
-                program.rotated_cone(&e, &speeds, cost.copper.clone());
+                let copper = cost.copper.iter().map(|v| layout.affine(k, *v)).collect();
+                program.rotated_cone(&e, &speeds, copper);
             }
             if cost.viscous > 0.0 {
                 program.minimize(&self.viscous(layout, root, k));
@@ -266,7 +327,7 @@ impl<'a> Programs<'a> {
                 let lost = Some(layout.brake(k, i));
                 program.minimize(&Affine::default().plus(lost, 1.0));
                 program.at_most_zero(Affine::default().plus(lost, -1.0));
-                let mut row = work.clone().times(-1.0).plus(lost, -1.0);
+                let mut row = layout.affine(k, *work).times(-1.0).plus(lost, -1.0);
                 for (node, share) in mean_root(k, n) {
                     row.add(layout.c(node), -factor * share);
                 }
