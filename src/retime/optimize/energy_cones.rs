@@ -416,3 +416,82 @@ fn kind(root: Root<'_>) -> usize {
         Root::Relaxed => 1,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
+
+    use super::super::path_energy::Sharing;
+    use super::*;
+    use crate::retime::motion::stream::{DOF, Joints};
+    use crate::retime::motion::timing::grid::PathPoint;
+    use crate::retime::motion::timing::reachability::time_optimal;
+
+    const INTERVALS: usize = 120;
+    const TANGENTS: usize = 30;
+    /// Largest difference of the energies, relative.
+    const SAME: f64 = 2e-5;
+
+    fn joints(first: f64, second: f64) -> Joints {
+        let mut joints = [0.0; DOF];
+        (joints[0], joints[1]) = (first, second);
+        joints
+    }
+
+    /// Two coupled joints under gravity: q₁ = s, q₂ = 0.8 sin 2s.
+    fn grid() -> PathGrid {
+        let at = |k: usize| 1.8 * k as f64 / INTERVALS as f64;
+        let node = |s: f64| {
+            let (q1, q2) =
+                (joints(1.0, 1.6 * (2.0 * s).cos()), joints(0.0, -3.2 * (2.0 * s).sin()));
+            PathPoint {
+                m: joints(14.0 + 2.0 * q1[1], 2.0 + 3.0 * q1[1]),
+                c: joints(2.0 * q2[1], 3.0 * q2[1] + 1.5),
+                g: joints(70.0 * s.cos(), 12.0 * (3.0 * s).sin()),
+                coulomb: joints(9.0, 3.0 * q1[1].signum()),
+                viscous: joints(11.0, 4.0 * q1[1]),
+                ..PathPoint::kinematic(joints(s, 0.8 * (2.0 * s).sin()), q1, q2, 2.5)
+            }
+        };
+        let s: Vec<f64> = (0..=INTERVALS).map(at).collect();
+        let nodes: Vec<PathPoint> = s.iter().map(|s| node(*s)).collect();
+        PathGrid::from_nodes(s, &nodes).unwrap()
+    }
+
+    /// The energy by cone programs with tangents that converge, J.
+    fn by_cones(programs: &mut Programs<'_>, start: &Profile) -> f64 {
+        let mut tangent = start.b().to_vec();
+        let mut energy = f64::INFINITY;
+        for _ in 0..TANGENTS {
+            let step = programs.solve(Root::Tangent(&tangent)).unwrap();
+            energy = step.energy - step.excess;
+            tangent = step.b;
+        }
+        energy
+    }
+
+    #[test]
+    fn the_interior_point_method_agrees_with_cone_programs() {
+        let grid = grid();
+        let limits = PathLimits::new([9.0; DOF], joints(180.0, 60.0).map(|t| t.max(1.0))).unwrap();
+        let fastest = time_optimal(&grid, &limits).into_profile().unwrap();
+        let models = [
+            (Sharing::PerJoint, 0.0, 0.0, 1.0),
+            (Sharing::Bus, 0.3, 150.0, 1.0),
+            (Sharing::Bus, 1.0, 0.0, 0.0),
+        ];
+        for (sharing, regeneration, base_w, work) in models {
+            let loss = joints(2e-3, 1e-2);
+            let model = EnergyModel { work, speed: 0.0, loss, base_w, sharing, regeneration };
+            for factor in [1.001, 1.1, 1.6] {
+                let time = factor * fastest.duration();
+                let start = fastest.scaled_to(time).unwrap();
+                let new = || Programs::new(&grid, &limits, &model, &start, time);
+                let interior = new().interior(start.b()).unwrap();
+                let cones = by_cones(&mut new(), &start);
+                let ratio = interior.energy / cones;
+                assert!((ratio - 1.0).abs() < SAME, "{model:?} {factor}: {ratio}");
+            }
+        }
+    }
+}

@@ -2,8 +2,8 @@
 //!
 //! Costs and limits of an interval depend on b at its two ends, so the matrix of a Newton step is tridiagonal; the
 //! time, which all nodes share, adds a term of rank one. Mehrotra's predictor and corrector as in
-//! `banded_program`; lost braking work is the violation of a soft row. Where the concave terms would make the
-//! matrix indefinite, a step leaves out their curvature, as a tangent does.
+//! `banded_program`; lost braking work is the violation of a soft row. A step leaves out the curvature of
+//! concave terms, as a tangent does: the matrix stays positive definite.
 
 use super::banded::{Banded, Cholesky};
 use super::energy_costs::{IntervalCost, OfEnds, mean_root};
@@ -29,17 +29,22 @@ pub(super) struct Interior {
     pub(super) time: f64,
 }
 
-/// Largest number of iterations; 15 to 30 are usual.
+/// Largest number of iterations; 8 to 15 are usual.
 const MAX_ITERATIONS: usize = 80;
 /// Length of a step as a share of the step to the boundary.
 const TO_BOUNDARY: f64 = 0.99;
 /// Smallest initial slack and multiplier.
 const BEGIN: f64 = 1e-2;
-/// Gap and residuals at the optimum, relative to the cost.
+/// Gap at the optimum, relative to the cost.
 const GAP: f64 = 1e-7;
-const RESIDUAL: f64 = 1e-7;
-/// Least curvature of a node, relative to the largest one: linear costs have none.
-const CURVATURE: f64 = 1e-12;
+/// Share of that gap below which a step does not aim, since residuals are left that it has to reduce.
+const LEAST_GAP: f64 = 0.1;
+/// Largest violation of a row at the optimum.
+const PRIMAL: f64 = 1e-7;
+/// Largest change of the cost per relative change of a node at the optimum, relative to the cost.
+const DUAL: f64 = 1e-6;
+/// Added curvature of a node, relative to its own: rounding leaves the matrix of the last steps not positive definite.
+const CURVATURE: f64 = 1e-8;
 
 /// Value, slopes and curvatures (00, 01, 11) of a function of two ends.
 #[derive(Clone, Copy, Default)]
@@ -163,8 +168,6 @@ struct Local {
     slope: Vec<f64>,
     /// Convex curvature of the cost and of the time with its multiplier.
     matrix: Banded,
-    /// Concave curvature of the cost, by node.
-    concave: Vec<f64>,
     time: f64,
     time_slope: Vec<f64>,
     /// Values and slopes of the rows.
@@ -215,12 +218,11 @@ impl EnergyProgram<'_> {
                 local.values.iter().zip(&states).map(|(value, it)| value - it.s + it.w).collect();
             let late = local.time - self.most + time.w;
             let complement = self.complement(&states, &time);
-            let size = RESIDUAL * (1.0 + cost.abs());
-            let is_small = |values: &[f64], most: f64| values.iter().all(|x| x.abs() <= most);
+            let settled = DUAL * (1.0 + cost.abs() + time.lambda);
             if complement <= GAP * (1.0 + cost.abs())
-                && is_small(&primal, RESIDUAL)
-                && is_small(&dual, size)
-                && late.abs() <= RESIDUAL
+                && primal.iter().all(|r| r.abs() <= PRIMAL)
+                && dual.iter().zip(&b[1..]).all(|(r, b)| r.abs() * b <= settled)
+                && late.abs() <= PRIMAL
             {
                 return Some(Interior { b, cost, time: time.lambda });
             }
@@ -250,7 +252,9 @@ impl EnergyProgram<'_> {
             let left = self.complement(&moved, &time.moved(&ahead.time, reach));
             let pairs =
                 1 + self.rows.iter().map(|row| 1 + usize::from(row.is_soft())).sum::<usize>();
-            let centre = complement / pairs as f64 * (left / complement).powi(3);
+            let least = LEAST_GAP * GAP * (1.0 + cost.abs());
+            let centre = (complement * (left / complement).powi(3)).max(least);
+            let centre = centre / pairs as f64;
             for ((c_w, c_s), d) in reductions.iter_mut().zip(&ahead.states) {
                 *c_w += d.w * d.lambda - centre;
                 *c_s -= d.s * d.lambda + centre;
@@ -276,7 +280,7 @@ impl EnergyProgram<'_> {
     fn at(&self, b: &[f64], time_price: f64) -> Local {
         let n = self.costs.len();
         let mut matrix = Banded::zeros(n - 1, 1);
-        let [mut slope, mut time_slope, mut concave] = [0; 3].map(|_| vec![0.0; n - 1]);
+        let [mut slope, mut time_slope] = [0; 2].map(|_| vec![0.0; n - 1]);
         let (mut cost, mut time) = (0.0, 0.0);
         let roots: Vec<Roots> = (0..n).map(|k| Roots::of(Self::ends(b, k))).collect();
         for (k, (of, roots)) in self.costs.iter().zip(&roots).enumerate() {
@@ -293,7 +297,6 @@ impl EnergyProgram<'_> {
                     let own = of.cross[i] + shares[i] * roots.slope[i];
                     slope[node] += copper.slope[i] + of.base * lasts.slope[i] + own;
                     time_slope[node] += of.time * lasts.slope[i];
-                    concave[node] += shares[i] * roots.curve[i];
                 }
             }
             let of_time = of.base + time_price * of.time;
@@ -306,7 +309,7 @@ impl EnergyProgram<'_> {
             (row.value(Self::ends(b, row.interval), roots), (row.slope(roots), curve))
         };
         let (values, (slopes, curves)) = self.rows.iter().map(of_row).unzip();
-        Local { cost, slope, matrix, concave, time, time_slope, values, slopes, curves }
+        Local { cost, slope, matrix, time, time_slope, values, slopes, curves }
     }
 
     fn dual(&self, local: &Local, states: &[State], time: &State) -> Vec<f64> {
@@ -326,24 +329,22 @@ impl EnergyProgram<'_> {
     /// The system with the rows eliminated. `None` if it is not positive definite.
     fn system(&self, local: &Local, states: &[State], time: &State) -> Option<System> {
         let n = self.costs.len();
-        let (mut matrix, mut concave) = (local.matrix.clone(), local.concave.clone());
+        let mut matrix = local.matrix.clone();
         let rows = self.rows.iter().zip(states).zip(local.slopes.iter().zip(&local.curves));
         for ((row, state), ([x, y], curve)) in rows {
             let weight = 1.0 / state.compliance(row);
             let [first, last] = curve.map(|curve| state.lambda * curve.max(0.0));
             let own = [weight * x * x + first, weight * x * y, weight * y * y + last];
             add(&mut matrix, row.interval, n, own);
-            spread(&mut concave, row.interval, n, curve.map(|curve| curve.min(0.0)), state.lambda);
         }
-        let largest = matrix.entries().map(|(_, _, value)| value.abs()).fold(0.0, f64::max);
-        for node in 0..n - 1 {
-            matrix.add(node, node, CURVATURE * largest);
+        let own: Vec<(usize, f64)> = matrix
+            .entries()
+            .filter_map(|(i, j, value)| (i == j).then_some((i, CURVATURE * value)))
+            .collect();
+        for (node, own) in own {
+            matrix.add(node, node, own);
         }
-        let mut exact = matrix.clone();
-        for (node, curve) in concave.iter().enumerate() {
-            exact.add(node, node, *curve);
-        }
-        let factor = exact.factor().or_else(|| matrix.factor())?;
+        let factor = matrix.factor()?;
         let solved = factor.solve(local.time_slope.clone());
         let share = time.lambda / time.w;
         let share = share / (1.0 + share * dot(&local.time_slope, &solved));
