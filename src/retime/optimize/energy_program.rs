@@ -140,6 +140,12 @@ pub fn minimize_energy(
         return EnergyOutcome::Kept(search.best);
     }
     let mut programs = Programs::new(grid, limits, model, &search.best.profile, duration);
+    if let Some(step) = programs.interior(search.best.profile.b()) {
+        search.offer(&step);
+        if search.improved {
+            return EnergyOutcome::Converged(search.best);
+        }
+    }
     let mut tangent = relaxed.map_or_else(|| search.best.profile.b().to_vec(), |r| r.b.clone());
     let mut converged = false;
     for _ in 0..MAX_TANGENTS {

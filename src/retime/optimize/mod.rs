@@ -15,6 +15,7 @@ pub mod eligibility;
 mod energy_cones;
 mod energy_costs;
 pub mod energy_curve;
+mod energy_interior;
 pub mod energy_program;
 pub mod freedom;
 pub mod idle;
