@@ -39,7 +39,6 @@
 
 use super::super::context::{Context, Corner};
 use super::super::edits::{NamedZone, zone_within};
-use super::super::flow::Through;
 use super::super::rule::Finding;
 use super::super::stops::{fix_zone, is_in_line, stops_for_movements};
 use crate::rapid::builtins::MoveForm;
