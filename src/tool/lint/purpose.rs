@@ -1,8 +1,6 @@
 //! Whether a movement does work or is next to it: no rule proposes to leave out or to loosen such a
 //! movement, and none touches the speed of a process.
 
-use std::collections::BTreeSet;
-
 use super::context::Context;
 use super::flow::Through;
 
@@ -10,27 +8,7 @@ use super::flow::Through;
 /// programmed below it, and so are the last millimetres of a grip.
 pub(super) const PROCESS_SPEED: f64 = 0.2;
 
-/// Lines in a row that are many: with a part the robot goes up, over and down.
-const MANY_LINES: usize = 4;
-
 impl Context<'_> {
-    /// Whether a line is one of many in a row, as on a contour or in a meander.
-    pub(super) fn is_in_row_of_lines(&self, site: usize) -> bool {
-        let mut row = BTreeSet::from([site]);
-        let mut open = vec![site];
-        while let Some(site) = open.pop().filter(|_| row.len() < MANY_LINES) {
-            let behind = self.next_moves(site, Through::NoEffect).unwrap_or_default();
-            let before = self.before(site).iter().copied();
-            let before = before.filter(|it| self.next_moves(*it, Through::NoEffect).is_some());
-            for other in behind.into_iter().chain(before) {
-                if self.sites[other].is_linear() && row.insert(other) {
-                    open.push(other);
-                }
-            }
-        }
-        row.len() >= MANY_LINES
-    }
-
     /// Whether a movement before or behind another one is slow: it then leads into or out of a process.
     pub(super) fn is_next_to_slow(&self, site: usize) -> bool {
         let is_slow = |site: &usize| self.is_slow(*site);
@@ -38,7 +16,8 @@ impl Context<'_> {
         self.before(site).iter().chain(&behind).any(is_slow)
     }
 
-    fn is_slow(&self, site: usize) -> bool {
+    /// Whether a movement is as slow as a process, or of unknown speed.
+    pub(super) fn is_slow(&self, site: usize) -> bool {
         self.sites[site].facts.speed.is_none_or(|it| it.tcp < PROCESS_SPEED)
     }
 

@@ -32,8 +32,8 @@
 //! Without a fix: the process determines where the part is released.
 //!
 //! ## Assumptions
-//! The program is complete: it has its entry. Where there are several payloads and none of them is zero, the
-//! lightest is the empty gripper.
+//! The program is complete: it has its entry. Where `tool0` is in use with several payloads of which none is
+//! zero, the lightest is the empty gripper.
 
 use super::super::context::Context;
 use super::super::flow::Place;
@@ -58,7 +58,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     let mass = |(place, _, call): &(Place, &Stmt, &Call)| payload_kg(context, place.0, call);
     // A load that is not known may be none.
     let Some(masses) = calls.iter().map(mass).collect::<Option<Vec<f64>>>() else { return };
-    if masses.is_empty() || masses.iter().any(|mass| *mass <= NO_LOAD) || has_gripper(&masses) {
+    if masses.is_empty() || masses.iter().any(|mass| *mass <= NO_LOAD) || has_gripper(context, &masses) {
         return;
     }
     let message = "a payload is set here, and no GripLoad load0 takes it off again";
@@ -71,7 +71,9 @@ pub(super) fn payload_kg(context: &Context<'_>, routine: RoutineId, call: &Call)
     parts(&load)?.first()?.num()
 }
 
-/// Whether payloads have the gripper's mass in them: several, and none of them is zero.
-pub(super) fn has_gripper(masses: &[f64]) -> bool {
-    masses.iter().all(|mass| *mass > NO_LOAD) && masses.iter().any(|mass| *mass != masses[0])
+/// Whether payloads have the gripper's mass in them: several, none of them zero, and `tool0` is in use.
+pub(super) fn has_gripper(context: &Context<'_>, masses: &[f64]) -> bool {
+    let is_bare = context.sites.iter().any(|site| site.tool_key() == Some("tool0"));
+    is_bare
+        && masses.iter().all(|mass| *mass > NO_LOAD) && masses.iter().any(|mass| *mass != masses[0])
 }

@@ -33,8 +33,8 @@
 //! ## Assumptions
 //! A line slower than 200 mm/s is a process, and so is what has an output that is on for lines and arcs
 //! alone. Lines next to work (an output, a wait, another tool or load) or next to a movement slower than
-//! 200 mm/s, lines along the tool's axis, four and more lines in a row and lines of less than 150 mm are
-//! ways into or out of it, or contours, and keep their speed. So do joint movements of less than 150 mm
+//! 200 mm/s, lines along the tool's axis, lines of less than 150 mm and lines next to such a one across the axis
+//! are ways into or out of it, or contours, and keep their speed. So do joint movements of less than 150 mm
 //! that are next to work or slower than 200 mm/s.
 
 use std::collections::BTreeMap;
@@ -83,8 +83,9 @@ fn travels(context: &Context<'_>, index: usize) -> bool {
     // A lowered override is a finding of its own: without it the speed may be right.
     let full = |settings: &Settings| settings.speed_override >= 1.0 && settings.refresh >= 1.0;
     let free = if site.is_linear() {
-        let contour = context.is_in_row_of_lines(index) || context.is_next_to_slow(index);
-        !(context.is_process(index) || context.is_next_to_work(index) || contour || goes_in())
+        let path = context.is_next_to_slow(index)
+            || site.executions.iter().any(|step| is_on_contour(context, *step));
+        !(context.is_process(index) || context.is_next_to_work(index) || path || goes_in())
     } else {
         !context.is_in_process(index)
     };
@@ -96,6 +97,18 @@ fn travels(context: &Context<'_>, index: usize) -> bool {
         && context.always(index, full)
         && free
         && (short_is_free || long())
+}
+
+/// Whether the line before or behind an execution is short and across the tool's axis, as on a contour and
+/// between the lanes of a meander.
+fn is_on_contour(context: &Context<'_>, step: usize) -> bool {
+    let is_side_step = |step: usize| {
+        let form = context.trace[step].what.movement().map(|movement| movement.form);
+        let is_line = matches!(form, Some(MoveForm::Linear | MoveForm::Circular));
+        let way = way(context, step).norm();
+        is_line && way > 0.0 && way < MIN_WAY && !is_along_tool(context, step)
+    };
+    context.neighbours(step).is_some_and(|(a, b)| is_side_step(a) || is_side_step(b))
 }
 
 /// Whether a movement goes into or out of something in an execution: along the tool's axis.

@@ -31,8 +31,8 @@
 //!
 //! ## Assumptions
 //! The process does not need a robot that stands. Points at which the tool turns back are taken
-//! for gripping and left alone, and so are movements of a process (below 200 mm/s, or with an output on
-//! for lines alone), before it and behind it. The confidence is low.
+//! for gripping and left alone, and so are movements below 200 mm/s and those before them. The confidence
+//! is low.
 
 use super::super::context::Context;
 use super::super::edits::zone_within;
@@ -67,13 +67,13 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
 
 fn stops_for_output(context: &Context<'_>, index: usize) -> bool {
     let site = &context.sites[index];
-    if !site.is_stop() || !is_ordinary(context, site) || context.is_process(index) {
+    if !site.is_stop() || !is_ordinary(context, site) || context.is_slow(index) {
         return false;
     }
     let next = context.next(index, Through::NoEffect);
     !next.is_empty()
         && next.iter().all(|next| matches!(next, Next::Output(_)))
         && context.next_moves(index, Through::Outputs).is_some_and(|next| {
-            are_plain(context, site, &next) && !next.iter().any(|it| context.is_process(*it))
+            are_plain(context, site, &next) && !next.iter().any(|it| context.is_slow(*it))
         })
 }

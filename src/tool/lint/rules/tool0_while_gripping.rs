@@ -47,7 +47,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         .iter()
         .filter_map(|(place, _, call)| Some((*place, payload_kg(context, place.0, call)?)))
         .collect();
-    if has_gripper(&masses.iter().map(|(_, mass)| *mass).collect::<Vec<f64>>()) {
+    if has_gripper(context, &masses.iter().map(|(_, mass)| *mass).collect::<Vec<f64>>()) {
         return;
     }
     let mut carrying = BTreeSet::new();

@@ -37,8 +37,11 @@
 //! across the tool's axis, next to an arc, or four and more in a row) and their ends (the tool goes
 //! in, or comes out, next to a line across its axis), interrupt routines, first movements.
 
+use std::collections::BTreeSet;
+
 use super::super::context::{Context, Corner};
 use super::super::edits::{NamedZone, zone_within};
+use super::super::flow::Through;
 use super::super::rule::Finding;
 use super::super::stops::{fix_zone, is_in_line, stops_for_movements};
 use crate::rapid::builtins::MoveForm;
@@ -53,6 +56,8 @@ const MIN_ROOM: f64 = 0.02;
 const MAX_CONTOUR_STEP: f64 = 0.15;
 /// Share of a way across the tool's axis that lies along it.
 const ACROSS: f64 = 0.3;
+/// Lines in a row that are many: with a part the robot goes up, over and down.
+const MANY_LINES: usize = 4;
 /// Share of the shorter way that a zone may take.
 const SHARE: f64 = 0.3;
 /// Largest zone between two lines, m: their corner is meant to be near.
@@ -101,9 +106,20 @@ fn could_pass(context: &Context<'_>, index: usize) -> Option<NamedZone> {
 fn is_contour(context: &Context<'_>, index: usize, next: &[usize], corner: &Corner) -> bool {
     let is_arc = |site: &usize| context.sites[*site].signature.form == MoveForm::Circular;
     let across = corner.along < ACROSS && next.iter().any(|it| context.sites[*it].is_linear());
-    across
-        || is_arc(&index)
-        || next.iter().any(is_arc)
-        || next.contains(&index)
-        || context.is_in_row_of_lines(index)
+    if across || is_arc(&index) || next.iter().any(is_arc) || next.contains(&index) {
+        return true;
+    }
+    let mut row = BTreeSet::from([index]);
+    let mut open = vec![index];
+    while let Some(site) = open.pop().filter(|_| row.len() < MANY_LINES) {
+        let behind = context.next_moves(site, Through::NoEffect).unwrap_or_default();
+        let before = context.before(site).iter().copied();
+        let before = before.filter(|it| context.next_moves(*it, Through::NoEffect).is_some());
+        for other in behind.into_iter().chain(before) {
+            if context.sites[other].is_linear() && row.insert(other) {
+                open.push(other);
+            }
+        }
+    }
+    row.len() >= MANY_LINES
 }
