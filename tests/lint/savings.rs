@@ -57,6 +57,16 @@ fn manual_change(fixture: &Fixture, finding: &Finding) -> Vec<Edit> {
         let (_, number) = new.split_once(' ').unwrap();
         return vec![edit(finding.related[0].0, number.to_owned())];
     }
+    if let Some((change, count)) = change.split_once(" in all ") {
+        let (new, old) = change.split_once(" in place of ").unwrap();
+        let places: Vec<Span> =
+            finding.related.iter().map(|(span, _)| *span).chain([span]).collect();
+        assert_eq!(places.len().to_string(), count, "all places are related");
+        return places
+            .into_iter()
+            .map(|it| edit(it, file.text(it).replacen(old, new, 1)))
+            .collect();
+    }
     if let Some((new, rest)) = change.split_once(" in place of ") {
         let old = rest.split(',').next().unwrap();
         assert!(statement.contains(old), "{statement} has no {old}");

@@ -58,7 +58,10 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     let mass = |(place, _, call): &(Place, &Stmt, &Call)| payload_kg(context, place.0, call);
     // A load that is not known may be none.
     let Some(masses) = calls.iter().map(mass).collect::<Option<Vec<f64>>>() else { return };
-    if masses.is_empty() || masses.iter().any(|mass| *mass <= NO_LOAD) || has_gripper(context, &masses) {
+    if masses.is_empty()
+        || masses.iter().any(|mass| *mass <= NO_LOAD)
+        || has_gripper(context, &masses)
+    {
         return;
     }
     let message = "a payload is set here, and no GripLoad load0 takes it off again";
@@ -75,5 +78,6 @@ pub(super) fn payload_kg(context: &Context<'_>, routine: RoutineId, call: &Call)
 pub(super) fn has_gripper(context: &Context<'_>, masses: &[f64]) -> bool {
     let is_bare = context.sites.iter().any(|site| site.tool_key() == Some("tool0"));
     is_bare
-        && masses.iter().all(|mass| *mass > NO_LOAD) && masses.iter().any(|mass| *mass != masses[0])
+        && masses.iter().all(|mass| *mass > NO_LOAD)
+        && masses.iter().any(|mass| *mass != masses[0])
 }
