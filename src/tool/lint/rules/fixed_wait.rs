@@ -1,9 +1,10 @@
 //! The program waits for a fixed time beside an input or output that could tell when to go on.
 //!
 //! ## What it does
-//! Finds `WaitTime` of at least 0.5 s directly before or behind an output or a wait for an input: those
-//! beside one signal of a file are one finding. A `PulseDO` and an output that is reset right behind the
-//! wait are a pulse or a process whose length is meant: they are left alone.
+//! Finds `WaitTime` of at least 0.5 s directly behind an output, directly before or behind a wait for an
+//! input, or directly before an output that is set: those beside one signal of a file are one finding. A
+//! `PulseDO` and an output that is reset right behind the wait are a pulse or a process whose length is
+//! meant: they are left alone.
 //!
 //! ## Why it wastes energy
 //! A fixed time is as long as the slowest case ever seen. The base load and the holding of the arm
@@ -111,7 +112,7 @@ fn is_fixed(context: &Context<'_>, step: usize) -> bool {
 }
 
 /// The signal that a wait is beside: an output right before it, an input that is waited for right before or
-/// behind it, or else an output right behind it.
+/// behind it, or else an output that is set right behind it.
 fn beside(context: &Context<'_>, step: usize) -> Option<String> {
     let input = |at: usize| match &context.trace.get(at)?.what {
         Action::Wait(wait, _) => wait.signal.as_ref().map(ToString::to_string),
@@ -121,7 +122,7 @@ fn beside(context: &Context<'_>, step: usize) -> Option<String> {
     before
         .and_then(|at| output(context, at).or_else(|| input(at)))
         .or_else(|| input(step + 1))
-        .or_else(|| output(context, step + 1))
+        .or_else(|| output(context, step + 1).filter(|_| sets(context, step + 1)))
 }
 
 fn output(context: &Context<'_>, step: usize) -> Option<String> {
@@ -129,6 +130,11 @@ fn output(context: &Context<'_>, step: usize) -> Option<String> {
         Action::Output(output) => Some(output.signal.to_string()),
         _ => None,
     }
+}
+
+/// Whether an output is set, and not reset.
+fn sets(context: &Context<'_>, step: usize) -> bool {
+    matches!(&context.trace[step].what, Action::Output(output) if output.value != "0")
 }
 
 /// Whether an output goes back by itself after the time of its pulse.

@@ -31,14 +31,15 @@
 //!
 //! ## Assumptions
 //! The process does not need a robot that stands. Points at which the tool turns back are taken
-//! for gripping and left alone, and so are movements below 200 mm/s and those before them. The confidence
-//! is low.
+//! for gripping and left alone, and so are movements below 200 mm/s, those before them, and `MoveAbsJ`: other
+//! machines wait for a robot that stands at home. The confidence is low.
 
 use super::super::context::Context;
 use super::super::edits::zone_within;
 use super::super::flow::{Next, Through};
 use super::super::rule::Finding;
 use super::super::stops::{are_plain, is_ordinary, propose_zone};
+use crate::rapid::builtins::MoveForm;
 
 rule!("EW104", "stop-for-output", Stops, Text, Info, "stop_for_output.rs");
 
@@ -67,7 +68,8 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
 
 fn stops_for_output(context: &Context<'_>, index: usize) -> bool {
     let site = &context.sites[index];
-    if !site.is_stop() || !is_ordinary(context, site) || context.is_slow(index) {
+    let is_pose = site.signature.form == MoveForm::AbsJ;
+    if !site.is_stop() || is_pose || !is_ordinary(context, site) || context.is_slow(index) {
         return false;
     }
     let next = context.next(index, Through::NoEffect);

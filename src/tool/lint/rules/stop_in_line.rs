@@ -32,7 +32,7 @@
 //!
 //! ## Assumptions
 //! Directions that differ by less than 0.3° are one line. Not looked at: movements next to work, and
-//! those of a process (below 200 mm/s, or with an output on for lines alone).
+//! those of a process (below 200 mm/s, or with an output on for lines alone) or directly before it.
 
 use super::super::context::Context;
 use super::super::edits::zone_within;
@@ -53,7 +53,8 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         }
         let Some(next) = stops_for_movements(context, index) else { continue };
         let Some(corner) = context.corner(index) else { continue };
-        if !is_in_line(context, index, &next, &corner) {
+        let is_before_process = next.iter().any(|next| context.is_process(*next));
+        if is_before_process || !is_in_line(context, index, &next, &corner) {
             continue;
         }
         let Some(zone) = zone_within((SHARE * corner.room()).min(MAX_ZONE)) else { continue };
