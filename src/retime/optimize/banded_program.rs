@@ -84,7 +84,7 @@ impl BandedProgram {
             let mut reductions: Vec<Reduction> = states.iter().map(RowState::products).collect();
             let mut direction = self.direction(&factor, &states, &residuals, &reductions);
             if !self.rows.is_empty() {
-                reductions = self.corrected(&reductions, &states, &residuals, &direction);
+                reductions = corrected(&reductions, &states, &residuals, &direction);
                 direction = self.direction(&factor, &states, &residuals, &reductions);
             }
             let step = (TO_BOUNDARY * reach(&states, &direction.states)).min(1.0);
@@ -159,33 +159,32 @@ impl BandedProgram {
         Direction { x, states }
     }
 
-    /// The reductions with Mehrotra's correction: the second-order terms of the predictor and the
-    /// centring that follows from its step length.
-    fn corrected(
-        &self,
-        reductions: &[Reduction],
-        states: &[RowState],
-        residuals: &Residuals,
-        predictor: &Direction,
-    ) -> Vec<Reduction> {
-        let pairs: usize = states.iter().map(|state| if state.is_soft() { 2 } else { 1 }).sum();
-        let reach = reach(states, &predictor.states);
-        let ahead = states.iter().zip(&predictor.states);
-        let ahead: f64 = ahead.map(|(state, change)| state.moved(change, reach).complement()).sum();
-        let mean = residuals.complement / pairs as f64;
-        let centre = mean * (ahead / residuals.complement).powi(3);
-        reductions
-            .iter()
-            .zip(&predictor.states)
-            .map(|(reduction, change)| change.corrected(*reduction, centre))
-            .collect()
-    }
-
     fn cost(&self, x: &[f64], curved: &[f64], states: &[RowState]) -> f64 {
         let smooth: f64 =
             x.iter().zip(curved).zip(&self.gradient).map(|((x, h), g)| x * (0.5 * h + g)).sum();
         smooth + states.iter().map(RowState::cost).sum::<f64>()
     }
+}
+
+/// The reductions with Mehrotra's correction: the second-order terms of the predictor and the
+/// centring that follows from its step length.
+fn corrected(
+    reductions: &[Reduction],
+    states: &[RowState],
+    residuals: &Residuals,
+    predictor: &Direction,
+) -> Vec<Reduction> {
+    let pairs: usize = states.iter().map(|state| if state.is_soft() { 2 } else { 1 }).sum();
+    let reach = reach(states, &predictor.states);
+    let ahead = states.iter().zip(&predictor.states);
+    let ahead: f64 = ahead.map(|(state, change)| state.moved(change, reach).complement()).sum();
+    let mean = residuals.complement / pairs as f64;
+    let centre = mean * (ahead / residuals.complement).powi(3);
+    reductions
+        .iter()
+        .zip(&predictor.states)
+        .map(|(reduction, change)| change.corrected(*reduction, centre))
+        .collect()
 }
 
 /// The largest step, at most slightly over 1, that keeps all slacks and multipliers positive.

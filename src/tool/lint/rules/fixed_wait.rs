@@ -49,6 +49,9 @@ rule!("EW305", "fixed-wait", Dwell, Text, Info, "fixed_wait.rs");
 /// Shorter waits are those that a valve takes, s.
 const MIN_WAIT: f64 = 0.5;
 
+/// A wait with its executions.
+type Executed = (Span, Vec<usize>);
+
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     let mut waits: BTreeMap<Span, Vec<usize>> = BTreeMap::new();
     for (step, done) in context.trace.iter().enumerate() {
@@ -57,7 +60,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         }
     }
     // Waits for the same signal have one cause.
-    let mut of_signal: BTreeMap<(FileId, String), Vec<(Span, Vec<usize>)>> = BTreeMap::new();
+    let mut of_signal: BTreeMap<(FileId, String), Vec<Executed>> = BTreeMap::new();
     for (span, steps) in waits {
         let fixed = steps.iter().all(|step| is_fixed(context, *step));
         if let Some(signal) = beside(context, steps[0]).filter(|_| fixed) {
@@ -67,8 +70,8 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     findings.extend(of_signal.into_values().map(|waits| fixed_wait(context, &waits)));
 }
 
-/// A finding for the waits beside a signal, each with its executions.
-fn fixed_wait(context: &Context<'_>, waits: &[(Span, Vec<usize>)]) -> Finding {
+/// A finding for the waits beside a signal.
+fn fixed_wait(context: &Context<'_>, waits: &[Executed]) -> Finding {
     let steps: Vec<usize> = waits.iter().flat_map(|(_, steps)| steps.iter().copied()).collect();
     let signal = beside(context, steps[0]).unwrap_or_default();
     let seconds: f64 = steps.iter().map(|step| context.trace[*step].duration).sum();
