@@ -86,7 +86,6 @@ fn files_named_in_the_manifest_exist() {
     let text = fs::read_to_string(folder.join("package.json")).unwrap();
     let manifest: Value = serde_json::from_str(&text).unwrap();
     for path in [
-        &manifest["main"],
         &manifest["contributes"]["languages"][0]["configuration"],
         &manifest["contributes"]["grammars"][0]["path"],
     ] {
