@@ -2,11 +2,12 @@
 //!
 //! Costs and limits of an interval depend on b at its two ends, so the matrix of a Newton step is tridiagonal; the
 //! time, which all nodes share, adds a term of rank one. Mehrotra's predictor and corrector as in
-//! `banded_program`; lost braking work is the violation of a soft row. A step leaves out the curvature of
+//! `banded_program` with the states of `row_state`; lost braking work is the violation of a soft row. A step leaves out the curvature of
 //! concave terms, as a tangent does: the matrix stays positive definite.
 
 use super::banded::{Banded, Cholesky};
 use super::energy_costs::{IntervalCost, OfEnds, mean_root};
+use super::row_state::{BEGIN, Reduction, RowChange, RowState, TO_BOUNDARY, bounded};
 
 /// Σ b `linear` + Σ √b `root` + `constant` ≤ 0 at the ends of an interval.
 #[derive(Clone, Copy, Debug)]
@@ -31,10 +32,6 @@ pub(super) struct Interior {
 
 /// Largest number of iterations; 8 to 15 are usual.
 const MAX_ITERATIONS: usize = 80;
-/// Length of a step as a share of the step to the boundary.
-const TO_BOUNDARY: f64 = 0.99;
-/// Smallest initial slack and multiplier.
-const BEGIN: f64 = 1e-2;
 /// Gap at the optimum, relative to the cost.
 const GAP: f64 = 1e-7;
 /// Share of that gap below which a step does not aim, since residuals are left that it has to reduce.
@@ -99,14 +96,6 @@ fn square(vectors: &[OfEnds], b: [f64; 2]) -> Pair {
     all
 }
 
-/// Slack, violation and multiplier of a row.
-#[derive(Clone, Copy)]
-struct State {
-    w: f64,
-    s: f64,
-    lambda: f64,
-}
-
 impl EndRow {
     fn value(&self, b: [f64; 2], roots: &Roots) -> f64 {
         self.constant
@@ -115,41 +104,6 @@ impl EndRow {
 
     fn slope(&self, roots: &Roots) -> [f64; 2] {
         [0, 1].map(|i| self.linear[i] + self.root[i] * roots.slope[i])
-    }
-
-    fn is_soft(&self) -> bool {
-        self.price.is_finite()
-    }
-
-    fn first(&self, value: f64) -> State {
-        let s = if self.is_soft() { value.max(0.0) + BEGIN } else { 0.0 };
-        let w = (s - value).max(BEGIN);
-        State { w, s, lambda: (BEGIN / w).min(0.5 * self.price) }
-    }
-}
-
-impl State {
-    fn mu(&self, row: &EndRow) -> f64 {
-        row.price - self.lambda
-    }
-
-    fn complement(&self, row: &EndRow) -> f64 {
-        let violation = if row.is_soft() { self.mu(row) * self.s } else { 0.0 };
-        self.lambda * self.w + violation
-    }
-
-    /// Change of the value of a row per change of its multiplier.
-    fn compliance(&self, row: &EndRow) -> f64 {
-        let soft = if row.is_soft() { self.s / self.mu(row) } else { 0.0 };
-        soft + self.w / self.lambda
-    }
-
-    fn moved(&self, change: &State, step: f64) -> State {
-        State {
-            w: self.w + step * change.w,
-            s: self.s + step * change.s,
-            lambda: self.lambda + step * change.lambda,
-        }
     }
 }
 
@@ -180,12 +134,9 @@ struct Local {
 /// A Newton step.
 struct Direction {
     b: Vec<f64>,
-    states: Vec<State>,
-    time: State,
+    states: Vec<RowChange>,
+    time: RowChange,
 }
-
-/// What a step lowers the products of a row and of its violation by.
-type Reduction = (f64, f64);
 
 /// The linear system of a Newton step: K + g gᵀ λ/w with the slope g of the time.
 struct System {
@@ -205,19 +156,23 @@ impl EnergyProgram<'_> {
     pub(super) fn solve(&self, start: &[f64]) -> Option<Interior> {
         let mut b = start.to_vec();
         let first = self.at(&b, 0.0);
-        let mut states: Vec<State> =
-            self.rows.iter().zip(&first.values).map(|(row, value)| row.first(*value)).collect();
+        let mut states: Vec<RowState> = self
+            .rows
+            .iter()
+            .zip(&first.values)
+            .map(|(row, value)| RowState::first(row.price, *value))
+            .collect();
         let w = (self.most - first.time).max(BEGIN * BEGIN);
-        let mut time = State { w, s: 0.0, lambda: BEGIN };
+        let mut time = RowState::hard(w, BEGIN);
         for _ in 0..MAX_ITERATIONS {
             let local = self.at(&b, time.lambda);
-            let lost = self.rows.iter().zip(&states).filter(|(row, _)| row.is_soft());
-            let cost = local.cost + lost.map(|(row, state)| row.price * state.s).sum::<f64>();
+            let cost = local.cost + states.iter().map(RowState::cost).sum::<f64>();
             let dual = self.dual(&local, &states, &time);
             let primal: Vec<f64> =
                 local.values.iter().zip(&states).map(|(value, it)| value - it.s + it.w).collect();
             let late = local.time - self.most + time.w;
-            let complement = self.complement(&states, &time);
+            let complement =
+                states.iter().map(RowState::complement).sum::<f64>() + time.complement();
             let settled = DUAL * (1.0 + cost.abs() + time.lambda);
             if complement <= GAP * (1.0 + cost.abs())
                 && primal.iter().all(|r| r.abs() <= PRIMAL)
@@ -227,16 +182,9 @@ impl EnergyProgram<'_> {
                 return Some(Interior { b, cost, time: time.lambda });
             }
             let system = self.system(&local, &states, &time)?;
-            let mut reductions: Vec<Reduction> = self
-                .rows
-                .iter()
-                .zip(&states)
-                .map(|(row, it)| {
-                    (it.lambda * it.w, if row.is_soft() { it.mu(row) * it.s } else { 0.0 })
-                })
-                .collect();
-            let mut of_time = time.lambda * time.w;
-            let newton = |reductions: &[Reduction], of_time: f64| {
+            let mut reductions: Vec<Reduction> = states.iter().map(RowState::products).collect();
+            let mut of_time = time.products();
+            let newton = |reductions: &[Reduction], of_time: Reduction| {
                 self.direction(
                     &system,
                     &local,
@@ -246,22 +194,20 @@ impl EnergyProgram<'_> {
                 )
             };
             let ahead = newton(&reductions, of_time);
-            let reach = self.reach(&b, (&states, &time), &ahead);
-            let moved: Vec<State> =
-                states.iter().zip(&ahead.states).map(|(it, d)| it.moved(d, reach)).collect();
-            let left = self.complement(&moved, &time.moved(&ahead.time, reach));
-            let pairs =
-                1 + self.rows.iter().map(|row| 1 + usize::from(row.is_soft())).sum::<usize>();
+            let reach = ahead.reach(&b, &states, &time);
+            let moved = states.iter().zip(&ahead.states).map(|(it, d)| it.moved(d, reach));
+            let left = moved.map(|it| it.complement()).sum::<f64>()
+                + time.moved(&ahead.time, reach).complement();
+            let pairs = 1 + states.iter().map(|it| 1 + usize::from(it.is_soft())).sum::<usize>();
             let least = LEAST_GAP * GAP * (1.0 + cost.abs());
             let centre = (complement * (left / complement).powi(3)).max(least);
             let centre = centre / pairs as f64;
-            for ((c_w, c_s), d) in reductions.iter_mut().zip(&ahead.states) {
-                *c_w += d.w * d.lambda - centre;
-                *c_s -= d.s * d.lambda + centre;
+            for (reduction, change) in reductions.iter_mut().zip(&ahead.states) {
+                *reduction = change.corrected(*reduction, centre);
             }
-            of_time += ahead.time.w * ahead.time.lambda - centre;
+            of_time = ahead.time.corrected(of_time, centre);
             let change = newton(&reductions, of_time);
-            let step = (TO_BOUNDARY * self.reach(&b, (&states, &time), &change)).min(1.0);
+            let step = (TO_BOUNDARY * change.reach(&b, &states, &time)).min(1.0);
             for (b, d) in b[1..].iter_mut().zip(&change.b) {
                 *b += step * d;
             }
@@ -312,7 +258,7 @@ impl EnergyProgram<'_> {
         Local { cost, slope, matrix, time, time_slope, values, slopes, curves }
     }
 
-    fn dual(&self, local: &Local, states: &[State], time: &State) -> Vec<f64> {
+    fn dual(&self, local: &Local, states: &[RowState], time: &RowState) -> Vec<f64> {
         let pairs = local.slope.iter().zip(&local.time_slope);
         let mut dual: Vec<f64> = pairs.map(|(g, t)| g + time.lambda * t).collect();
         for ((row, state), slope) in self.rows.iter().zip(states).zip(&local.slopes) {
@@ -321,18 +267,13 @@ impl EnergyProgram<'_> {
         dual
     }
 
-    fn complement(&self, states: &[State], time: &State) -> f64 {
-        let of_rows: f64 = self.rows.iter().zip(states).map(|(row, it)| it.complement(row)).sum();
-        of_rows + time.lambda * time.w
-    }
-
     /// The system with the rows eliminated. `None` if it is not positive definite.
-    fn system(&self, local: &Local, states: &[State], time: &State) -> Option<System> {
+    fn system(&self, local: &Local, states: &[RowState], time: &RowState) -> Option<System> {
         let n = self.costs.len();
         let mut matrix = local.matrix.clone();
         let rows = self.rows.iter().zip(states).zip(local.slopes.iter().zip(&local.curves));
         for ((row, state), ([x, y], curve)) in rows {
-            let weight = 1.0 / state.compliance(row);
+            let weight = 1.0 / state.compliance();
             let [first, last] = curve.map(|curve| state.lambda * curve.max(0.0));
             let own = [weight * x * x + first, weight * x * y, weight * y * y + last];
             add(&mut matrix, row.interval, n, own);
@@ -355,26 +296,21 @@ impl EnergyProgram<'_> {
         &self,
         system: &System,
         local: &Local,
-        (states, time): (&[State], &State),
+        (states, time): (&[RowState], &RowState),
         (dual, primal, late): (&[f64], &[f64], f64),
-        (reductions, of_time): (&[Reduction], f64),
+        (reductions, of_time): (&[Reduction], Reduction),
     ) -> Direction {
         let n = self.costs.len();
         let mut right: Vec<f64> = dual.iter().map(|r| -r).collect();
-        let shifts: Vec<f64> = self
-            .rows
+        let shifts: Vec<f64> = states
             .iter()
-            .zip(states)
             .zip(reductions.iter().zip(primal))
-            .map(|((row, state), ((c_w, c_s), primal))| {
-                let soft = if row.is_soft() { c_s / state.mu(row) } else { 0.0 };
-                (primal + soft - c_w / state.lambda) / state.compliance(row)
-            })
+            .map(|(state, (reduction, primal))| state.shift(*primal, *reduction))
             .collect();
         for ((row, slope), shift) in self.rows.iter().zip(&local.slopes).zip(&shifts) {
             spread(&mut right, row.interval, n, *slope, -shift);
         }
-        let time_shift = (late - of_time / time.lambda) * time.lambda / time.w;
+        let time_shift = time.shift(late, of_time);
         for (right, slope) in right.iter_mut().zip(&local.time_slope) {
             *right -= slope * time_shift;
         }
@@ -389,42 +325,24 @@ impl EnergyProgram<'_> {
             .iter()
             .zip(states)
             .zip(local.slopes.iter().zip(reductions.iter().zip(&shifts)))
-            .map(|((row, state), (slope, ((c_w, c_s), shift)))| {
+            .map(|((row, state), (slope, (reduction, shift)))| {
                 let value = slope[0] * at(row.interval) + slope[1] * at(row.interval + 1);
-                let lambda = value / state.compliance(row) + shift;
-                let w = (-c_w - state.w * lambda) / state.lambda;
-                let soft = row.is_soft();
-                let s = if soft { (state.s * lambda - c_s) / state.mu(row) } else { 0.0 };
-                State { w, s, lambda }
+                state.change(value / state.compliance() + shift, *reduction)
             })
             .collect();
-        let lambda = dot(&local.time_slope, &b) * time.lambda / time.w + time_shift;
-        let w = (-of_time - time.w * lambda) / time.lambda;
-        Direction { b, states, time: State { w, s: 0.0, lambda } }
+        let lambda = dot(&local.time_slope, &b) / time.compliance() + time_shift;
+        Direction { b, states, time: time.change(lambda, of_time) }
     }
+}
 
+impl Direction {
     /// The largest step, at most slightly over 1, that keeps what has to be positive so.
-    fn reach(&self, b: &[f64], (states, time): (&[State], &State), change: &Direction) -> f64 {
-        let mut reach: f64 = 1.0 / TO_BOUNDARY;
-        let mut bound = |value: f64, change: f64| {
-            if change < 0.0 {
-                reach = reach.min(-value / change);
-            }
-        };
-        for (b, d) in b[1..].iter().zip(&change.b) {
-            bound(*b, *d);
-        }
-        for ((row, state), d) in self.rows.iter().zip(states).zip(&change.states) {
-            bound(state.w, d.w);
-            bound(state.lambda, d.lambda);
-            if row.is_soft() {
-                bound(state.s, d.s);
-                bound(state.mu(row), -d.lambda);
-            }
-        }
-        bound(time.w, change.time.w);
-        bound(time.lambda, change.time.lambda);
-        reach
+    fn reach(&self, b: &[f64], states: &[RowState], time: &RowState) -> f64 {
+        let nodes = b[1..].iter().zip(&self.b);
+        let reach = nodes.fold(1.0 / TO_BOUNDARY, |reach, (b, d)| bounded(*b, *d, reach));
+        let rows = states.iter().zip(&self.states);
+        let reach = rows.fold(reach, |reach, (state, change)| state.reach(change, reach));
+        time.reach(&self.time, reach)
     }
 }
 

@@ -30,6 +30,7 @@ pub mod rest;
 pub mod resting;
 pub mod retime;
 pub mod robot_plant;
+mod row_state;
 mod run_plant;
 mod run_problem;
 pub mod site;
