@@ -62,43 +62,9 @@ pub fn diagnose_logs(
     tell: &dyn Fn(Phase),
 ) -> Diagnosis {
     let held = if logs.held.is_empty() { logs.train } else { logs.held };
-    tell(Phase::Baseline);
-    let known = robot_of(model, logs.before, settings);
-    let (believed, before) = known.unwrap_or_else(|| (Improved::same(model), Vec::new()));
-    let mut train = all(&believed.applied, logs.train);
-    train.extend(logs.before.iter().flat_map(|log| Record::before(&believed.applied, log)));
-    let held = all(&believed.applied, held);
-    let found = diagnose_telling([model, &believed.written], train, &held, settings, tell);
-    Diagnosis { before, ..found }
-}
-
-/// The robot of a baseline that differs from the model by more than everyday errors, with the effects
-/// that it has already.
-fn robot_of(
-    model: &Model,
-    before: &[&Samples],
-    settings: &Settings,
-) -> Option<(Improved, Vec<Finding>)> {
-    if before.is_empty() {
-        return None;
-    }
-    let mut records = all(model, before);
-    let design = with_loads(&mut records, settings);
-    let refit = refitted(model, (&design, &records));
-    let held = all(model, before);
-    let gaps = shrink(&held, [model, &refit.applied, &refit.applied]);
-    let is_everyday = |of: &JointGap| of.refit <= settings.tunables.usual_error * of.torque;
-    if gaps.joints.iter().all(is_everyday) {
-        return None;
-    }
-    let none = Search::none_of(&design)?;
-    // Robots warm up differently each day.
-    let effects = nameable(&records, settings).into_iter().filter(|of| of.acts != Acts::OverTime);
-    let search = Search::new(&records, &design, &effects.collect::<Vec<_>>());
-    let Searched { none, best: found, tried, .. } = search.best(none);
-    let models = Models { nominal: model, believed: model, refit: &refit, turned: None };
-    let Graded { decision, best, .. } = graded(&search, [&none, &found], &tried, &held, &models);
-    (!decision.effects.is_empty()).then_some((best, decision.effects))
+    let mut train = all(model, logs.train);
+    train.extend(logs.before.iter().flat_map(|log| Record::before(model, log)));
+    diagnose_telling(model, train, &all(model, held), settings, tell)
 }
 
 fn all<'m>(model: &'m Model, logs: &[&Samples]) -> Vec<Record<'m>> {
@@ -114,13 +80,12 @@ pub fn diagnose(
     held: &[Record<'_>],
     settings: &Settings,
 ) -> Diagnosis {
-    diagnose_telling([model, model], train, held, settings, &|_| {})
+    diagnose_telling(model, train, held, settings, &|_| {})
 }
 
-/// The same of a nominal model, with that of the baseline, of which the records are; `tell` is called
-/// with each phase that begins.
+/// The same; `tell` is called with each phase that begins.
 fn diagnose_telling(
-    [model, believed]: [&Model; 2],
+    model: &Model,
     mut train: Vec<Record<'_>>,
     held: &[Record<'_>],
     settings: &Settings,
@@ -141,9 +106,9 @@ fn diagnose_telling(
     let Searched { none, best, tried, near } = search.best(none);
     let found = polished(&search, &none, best);
     tell(Phase::Decision);
-    let plain = refitted(believed, (&design, &train));
+    let (known, plain) = known_of(model, (&design, &train), &found, held);
     let refit = turned.as_ref().map_or_else(|| plain.clone(), |of| of.added_to(&plain));
-    let models = Models { nominal: model, believed, refit: &refit, turned: turned.as_ref() };
+    let models = Models { nominal: model, known, refit: &refit, turned: turned.as_ref() };
     let Graded { mut decision, mut best, shrink: mut graded } =
         graded(&search, [&none, &found], &tried, held, &models);
     if let Some(finding) = turned.as_ref().and_then(Turned::finding) {
@@ -165,7 +130,7 @@ fn diagnose_telling(
         decision.verdict = Verdict::NoGap;
     }
     let ids: Vec<&'static str> = decision.effects.iter().map(|of| of.effect.id).collect();
-    let rivals = Rivals::new([believed, &refit.applied], &search, (&none, near), settings.trust);
+    let rivals = Rivals::new([model, &refit.applied], &search, (&none, near), settings.trust);
     let places = if ids.is_empty() && decision.verdict == Verdict::Unknown {
         places_missed(&train, &refit)
     } else {
@@ -185,7 +150,7 @@ fn diagnose_telling(
         improved: best,
         reasons,
         channels: Vec::new(),
-        before: Vec::new(),
+        before: found.in_baseline().map(known_finding).collect(),
         rivals: Some(rivals),
     }
 }
@@ -193,9 +158,9 @@ fn diagnose_telling(
 /// Models that a decision is compared with.
 struct Models<'a> {
     nominal: &'a Model,
-    /// As the baseline shows it.
-    believed: &'a Model,
-    /// With other parameters.
+    /// Effects that the baseline has, too.
+    known: Vec<PieceRows>,
+    /// With other parameters and these effects.
     refit: &'a Improved,
     /// Torques that are turned round.
     turned: Option<&'a Turned>,
@@ -311,7 +276,8 @@ impl Models<'_> {
             return self.refit.clone();
         }
         let logs = (search.design, search.records);
-        let best = written(self.believed, logs, pieces_of(effects), comes_again);
+        let pieces = self.known.iter().cloned().chain(pieces_of(effects)).collect();
+        let best = written(self.nominal, logs, pieces, comes_again);
         self.turned.map_or_else(|| best.clone(), |of| of.added_to(&best))
     }
 }
@@ -425,8 +391,35 @@ fn nameable(train: &[Record<'_>], settings: &Settings) -> Vec<&'static Effect> {
     settings.effects.iter().copied().filter(may).collect()
 }
 
-fn pieces_of(effects: &[Candidate]) -> Vec<PieceRows> {
-    effects.iter().flat_map(|of| of.pieces.iter().cloned()).collect()
+fn pieces_of<'a>(
+    effects: impl IntoIterator<Item = &'a Candidate>,
+) -> impl Iterator<Item = PieceRows> {
+    effects.into_iter().flat_map(|of| of.pieces.iter().cloned())
+}
+
+/// An effect that the baseline has, too.
+fn known_finding(of: &Candidate) -> Finding {
+    Finding::alone(of.effect, of.pieces.iter().filter_map(|piece| piece.joint).collect(), 0.0)
+}
+
+/// The effects of a robot that the baseline has, too, those alone with which the model predicts held-out data
+/// better, and that model.
+fn known_of(
+    model: &Model,
+    logs: (&Design, &[Record<'_>]),
+    found: &Found,
+    held: &[Record<'_>],
+) -> (Vec<PieceRows>, Improved) {
+    let (mut known, mut best) = (Vec::new(), refitted(model, logs));
+    for of in found.in_baseline() {
+        let mut more: Vec<PieceRows> = known.clone();
+        more.extend(pieces_of([of]).map(PieceRows::without_tangents));
+        let next = written(model, logs, more.clone(), |_| true);
+        if shrink(held, [model, &best.applied, &next.applied]).by_effect.value > 0.0 {
+            (known, best) = (more, next);
+        }
+    }
+    (known, best)
 }
 
 /// The model with other parameters that predicts best.

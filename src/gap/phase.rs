@@ -3,8 +3,6 @@
 /// A phase of a diagnosis, in the order in which they come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// What a baseline shows.
-    Baseline,
     /// The rows that are compared.
     Design,
     /// Effects are looked for.
@@ -17,14 +15,12 @@ pub enum Phase {
 
 impl Phase {
     /// All of them.
-    pub const ALL: [Phase; 5] =
-        [Phase::Baseline, Phase::Design, Phase::Search, Phase::Decision, Phase::Grading];
+    pub const ALL: [Phase; 4] = [Phase::Design, Phase::Search, Phase::Decision, Phase::Grading];
 
     /// In words.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
-            Phase::Baseline => "the robot as it was before",
             Phase::Design => "logs and model",
             Phase::Search => "effects that explain the gap",
             Phase::Decision => "what may be asserted",

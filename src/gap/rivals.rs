@@ -201,6 +201,7 @@ impl Rival {
             effects: of
                 .effects
                 .iter()
+                .filter(|of| !of.in_baseline())
                 .map(|of| (of.effect, of.pieces.iter().filter_map(|of| of.joint).collect()))
                 .collect(),
             score: of.score,

@@ -130,6 +130,17 @@ impl<'a> Record<'a> {
         Record { kind, ..self.clone() }
     }
 
+    /// The same record, of the baseline if it is of today and of today if it is of the baseline.
+    #[must_use]
+    pub(in crate::gap) fn swapped(&self) -> Record<'a> {
+        let kind = match self.kind {
+            RecordKind::Before => RecordKind::Mean,
+            RecordKind::Mean => RecordKind::Before,
+            RecordKind::Drift => RecordKind::Drift,
+        };
+        Record { kind, ..self.clone() }
+    }
+
     /// A periodic motion that nobody has logged, whose torques are the model's. `states` are position,
     /// rate and acceleration \[rad, s\] every `step` \[s\], `noise` the variance of a row of one
     /// repetition by joint \[N²m²\].

@@ -2,17 +2,17 @@
 
 use rayon::prelude::*;
 
+use super::between::beyond_spread;
 use super::finding::{Estimated, Finding, Remainder, Verdict};
 use super::found::{Candidate, Found, Tried};
 use super::held::{Held, held};
 use super::search::{BEYOND, Search};
-use super::since::{all_as_now, since_baseline};
+use super::since::since_baseline;
 use super::trail::{Entry, Gate};
 use crate::arm::effects::{Acts, Effect, Nature, Scope};
 use crate::gap::data::{Record, RecordKind};
-use crate::gap::design::Set;
 use crate::gap::model::Fitted;
-use crate::gap::posterior::{Gains, JointSizes};
+use crate::gap::posterior::{Gains, MOST_OF_FRICTION};
 use crate::gap::trust::Trust;
 
 /// Ids of effects that a class has at most: more are unknown.
@@ -67,6 +67,8 @@ struct WeighedPiece {
     share: f64,
     /// Evidence \[nats\].
     nats: f64,
+    /// Deviations by how much it differs from log to log, where logs show that.
+    beyond_spread: Option<f64>,
 }
 
 /// What is asserted, and what is not.
@@ -87,30 +89,19 @@ pub(in crate::gap) fn decide(
     missed: &[f64],
 ) -> Decision {
     let tunables = &search.design.tunables;
-    let has_baseline = search.records.iter().any(|record| record.kind == RecordKind::Before);
+    let has_baseline = search.has_baseline();
     let n = search.design.joints.len();
     let mut trail = Vec::new();
     let noisy = noisy_joints(search, &mut trail);
-    let weighed: Vec<Weighed> = (0..found.effects.len())
-        .into_par_iter()
-        .map(|k| weigh(search, none, found, k, tried))
-        .collect();
-    let all = all_as_now(search);
-    let since: Vec<Option<f64>> = (0..found.effects.len())
-        .into_par_iter()
-        .map(|k| since_baseline(search, none, found, k, all.as_ref()?))
-        .collect();
+    let effects = || (0..found.effects.len()).into_par_iter();
+    let new = || effects().filter(|k| !found.effects[*k].in_baseline());
+    let weighed: Vec<Weighed> = new().map(|k| weigh(search, none, found, k, tried)).collect();
+    let since: Vec<Option<f64>> = new().map(|k| since_baseline(search, none, found, k)).collect();
     let everyday: Vec<f64> = (0..n).map(|j| found.fit.everyday(search.design, j)).collect();
-    let left = |fit: &Found, joint: usize| {
-        if has_baseline {
-            fit.fit.changed(search.design, joint)
-        } else {
-            fit.fit.everyday(search.design, joint)
-        }
-    };
     let mut kept: Vec<Candidate> = Vec::new();
     let mut decision = Decided::default();
-    for (number, (of, candidate)) in weighed.iter().zip(&found.effects).enumerate() {
+    let candidates = found.effects.iter().filter(|of| !of.in_baseline());
+    for (number, (of, candidate)) in weighed.iter().zip(candidates).enumerate() {
         let mut ask = |gate: Gate, at: String, value: f64, limit: f64| {
             let entry = gate.of(at, value, limit);
             let passed = entry.passed;
@@ -129,7 +120,7 @@ pub(in crate::gap) fn decide(
             let joint = piece.fitted.joint;
             let at = joint.map_or(id.to_owned(), |joint| format!("{id} of joint {}", joint + 1));
             let place = joint.unwrap_or(piece.most);
-            let least = least_size(search, piece, left(found, place), missed[place]);
+            let least = least_size(search, piece, search.left(&found.fit, place), missed[place]);
             let confused = beside_confused(search, found, &weighed, [number, k]);
             let is_quiet = !noisy.contains(&place);
             let mut there = is_quiet
@@ -137,6 +128,9 @@ pub(in crate::gap) fn decide(
                 & ask(Gate::Bounds, at.clone(), piece.fitted.beyond_bounds(), BEYOND);
             if let Some(value) = piece.fitted.significance {
                 there &= ask(Gate::Significance, at.clone(), value, SIGNIFICANT);
+            }
+            if let Some(value) = piece.beyond_spread {
+                there &= ask(Gate::Logs, at.clone(), value, SIGNIFICANT);
             }
             if let Some(ratio) = confused {
                 there &= ask(Gate::Form, at.clone(), ratio, tunables.of_confused);
@@ -169,9 +163,11 @@ pub(in crate::gap) fn decide(
     let has_parameters = kept.iter().any(|of| of.effect.nature == Nature::Parameters);
     // What is everyday is not unexplained.
     let mut explained = kept.clone();
-    let is_kept = |id: &str| kept.iter().any(|of| of.effect.id == id);
+    let is_kept = |of: &Candidate| {
+        !of.in_baseline() && kept.iter().any(|kept| kept.effect.id == of.effect.id)
+    };
     let all = found.effects.iter();
-    explained.extend(all.filter(|of| of.is_everyday && !is_kept(of.effect.id)).cloned());
+    explained.extend(all.filter(|of| of.is_everyday && !is_kept(of)).cloned());
     let fit = match explained.len() {
         0 => None,
         _ => search.with(none, explained),
@@ -180,7 +176,7 @@ pub(in crate::gap) fn decide(
         fit.unwrap_or_else(|| Found { effects: Vec::new(), score: 0.0, fit: none.fit.clone() });
     let mut remainder = Vec::new();
     for joint in 0..n {
-        let share = left(&fit, joint);
+        let share = search.left(&fit.fit, joint);
         let at = format!("joint {}", joint + 1);
         let entry = Gate::Unexplained.of(at, share, tunables.usual_error);
         if !entry.passed || noisy.contains(&joint) {
@@ -190,7 +186,11 @@ pub(in crate::gap) fn decide(
         }
         trail.push(entry);
     }
-    let has_other_friction = fit.fit.sizes.iter().any(JointSizes::has_other_friction);
+    let is_before: Vec<bool> =
+        search.records.iter().map(|record| record.kind == RecordKind::Before).collect();
+    let has_other_friction = (0..n).any(|joint| {
+        fit.fit.change_of_friction(search.design, joint, &is_before) > MOST_OF_FRICTION
+    });
     let Decided { effects, candidates } = decision;
     let verdict = match (effects.is_empty(), remainder.is_empty()) {
         (true, true) if has_baseline && !has_parameters && !has_other_friction => Verdict::NoGap,
@@ -318,7 +318,9 @@ fn weigh(
             1 => found.score - without,
             _ => found.score - score(search.without_joint(none, found, number, k)),
         };
-        WeighedPiece { member: first + k, fitted, most, share: size(&most), nats }
+        let beyond_spread = beyond_spread(search, (&found.fit, &gains), first + k);
+        let member = first + k;
+        WeighedPiece { member, fitted, most, share: size(&most), nats, beyond_spread }
     });
     let piece = &found.effects[number].pieces[0];
     let is_of_few = effect.scope == Scope::Robot && piece.rows.len() <= FEW;
@@ -338,10 +340,11 @@ fn weigh(
 
 /// Effects that explain the logs as well in the place of one of a set.
 fn class(search: &Search<'_>, found: &Found, number: usize, tried: &[Tried]) -> Vec<&'static str> {
-    let ids: Vec<&str> = found.effects.iter().map(|of| of.effect.id).collect();
-    let mut class = vec![found.effects[number].effect.id];
+    let ids = found.tried().ids;
+    let own = found.effects[number].effect.id;
+    let mut class = vec![own];
     for of in tried {
-        let is_rest = |id: &&str| *id == ids[number] || of.ids.contains(id);
+        let is_rest = |id: &&str| *id == own || of.ids.contains(id);
         let others: Vec<&'static str> =
             of.ids.iter().copied().filter(|id| !ids.contains(id)).collect();
         let near = of.score > found.score - search.design.tunables.class_nats;
@@ -369,21 +372,27 @@ fn inclusion(id: &str, tried: &[Tried]) -> f64 {
     with / f64::max(all, f64::MIN_POSITIVE)
 }
 
-/// Joints whose noise has grown since the baseline.
+/// Joints whose noise has grown since the baseline: the least of a log of today is compared with the
+/// largest of one of the baseline.
 fn noisy_joints(search: &Search<'_>, trail: &mut Vec<Entry>) -> Vec<usize> {
     let tunables = &search.design.tunables;
     let mut noisy = Vec::new();
     for of in &search.design.joints {
-        let share = |set: Set| {
-            let cells = of.cells.iter().filter(|cell| cell.set == set);
+        let share = |record: usize| {
+            let cells = of.cells.iter().filter(|cell| cell.record == record);
             let (noise, power) = cells.fold((0.0, 0.0), |(noise, power), cell| {
                 let count = cell.rows.len() as f64;
                 (noise + cell.noise * count, power + cell.power * count)
             });
             f64::sqrt(noise / f64::max(power, f64::MIN_POSITIVE))
         };
-        let [now, before] = [Set::Now, Set::Baseline].map(share);
-        if before > 0.0 && now > tunables.least_share {
+        let of_kind = |kind: RecordKind| {
+            let all = search.records.iter().enumerate().filter(move |(_, of)| of.kind == kind);
+            all.map(|(record, _)| share(record)).filter(|share| *share > 0.0)
+        };
+        let now = of_kind(RecordKind::Mean).fold(f64::INFINITY, f64::min);
+        let before = of_kind(RecordKind::Before).fold(0.0, f64::max);
+        if before > 0.0 && now.is_finite() && now > tunables.least_share {
             let at = format!("joint {}", of.joint + 1);
             let entry = Gate::Noise.of(at, now / before, tunables.noise_ratio);
             if !entry.passed {

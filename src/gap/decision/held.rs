@@ -23,7 +23,6 @@ const OFF: f64 = 0.3;
 /// forms of the laws. Windows have fitted ends.
 #[must_use]
 pub(in crate::gap) fn polished(search: &Search<'_>, none: &Found, mut found: Found) -> Found {
-    let logs = (search.design, search.records);
     for _ in 0..POLISHED {
         let gains = Gains::new(search.design, &found.fit);
         let mut effects = found.effects.clone();
@@ -32,11 +31,12 @@ pub(in crate::gap) fn polished(search: &Search<'_>, none: &Found, mut found: Fou
             if piece.effect.acts == Acts::InWindow {
                 continue;
             }
-            let all = held(logs, (&found.fit, &gains), number).into_iter();
+            let records = search.logs(piece.in_baseline);
+            let all = held((search.design, records), (&found.fit, &gains), number).into_iter();
             let mut shape = piece.shape.clone();
             for Held { coordinate, off, .. } in all.filter(|of| of.off.abs() > OFF * of.sd) {
                 shape[coordinate] += off;
-                *piece = piece.reshaped(search.design, search.records, &shape, true);
+                *piece = piece.reshaped(search.design, records, &shape, true);
                 is_moved = true;
             }
         }

@@ -1,5 +1,6 @@
 //! Which effects are asserted, and why.
 
+mod between;
 mod calibration;
 mod decide;
 mod finding;
@@ -8,6 +9,7 @@ mod held;
 mod search;
 mod shape;
 mod since;
+mod singles;
 mod starts;
 mod trail;
 mod waves;

@@ -3,7 +3,7 @@
 use crate::arm::effects::{Acts, Effect, Nature, Scope, Subject};
 use rayon::prelude::*;
 
-use super::found::{Candidate, Found, Searched};
+use super::found::{Candidate, Found, Searched, all_as_now, may_be_in_baseline};
 use super::shape::{lowest, moves, refined};
 use super::waves::Waves;
 use super::window::Windows;
@@ -14,14 +14,14 @@ use crate::gap::posterior::{
     Fit, Gains, Hypothesis, Member, Sizes, Start, TAIL, fitted, fitted_as_written, halfway, usual,
 };
 
-/// Effects at single joints that are looked at in each round, and effects at all their joints.
+/// Effects at single joints that are looked at in each round.
 const SINGLES: usize = 60;
-const FULL: usize = 6;
-/// Effects that are found together at most, and those of everyday size beside them.
+/// Effects that are found together at most, as many that the baseline has, too, and those of everyday size
+/// beside them.
 const MOST: usize = 3;
 const MOST_EVERYDAY: usize = 3;
 /// Rounds in which effects are added at most.
-const ROUNDS_AT_MOST: usize = MOST + 3;
+const ROUNDS_AT_MOST: usize = 2 * MOST + 3;
 /// Steps of the sizes, least and most: of a first fit, of a first look at a set, of a fit with a set.
 const FIRST: [usize; 2] = [10, 40];
 const LOOK: [usize; 2] = [3, 12];
@@ -47,6 +47,8 @@ pub(in crate::gap) struct Search<'a> {
     windows: Vec<Windows>,
     /// Effects that are waves.
     waves: Vec<Waves>,
+    /// With a baseline, the records as if those of the baseline were of today.
+    as_now: Option<Vec<Record<'a>>>,
 }
 
 impl<'a> Search<'a> {
@@ -72,7 +74,25 @@ impl<'a> Search<'a> {
             joints.filter_map(|joint| Waves::new(records, of, joint))
         });
         let (windows, waves) = (windows.collect(), waves.collect());
-        Search { records, design, pieces, windows, waves }
+        let as_now = all_as_now(records);
+        if let Some(all) = &as_now {
+            let lasting: Vec<&'static Effect> =
+                effects.iter().copied().filter(|of| may_be_in_baseline(of)).collect();
+            let own = piece_rows(design, all, &lasting).into_iter();
+            pieces.extend(own.map(PieceRows::of_baseline));
+        }
+        Search { records, design, pieces, windows, waves, as_now }
+    }
+
+    /// Whether there is a baseline.
+    pub(super) fn has_baseline(&self) -> bool {
+        self.as_now.is_some()
+    }
+
+    /// The records to which an effect adds something, as they are now: all of them where the baseline has
+    /// it, too.
+    pub(super) fn logs(&self, in_baseline: bool) -> &[Record<'a>] {
+        self.as_now.as_deref().filter(|_| in_baseline).unwrap_or(self.records)
     }
 }
 
@@ -82,50 +102,6 @@ impl Search<'_> {
     pub(in crate::gap) fn none_of(design: &Design) -> Option<Found> {
         let fit = fitted(design, Hypothesis::default(), Start::at(usual(design)), FIRST)?;
         Some(Found { effects: Vec::new(), score: 0.0, fit })
-    }
-
-    /// For each effect that is not in the set its best shape at each joint, those alone that may explain
-    /// something.
-    fn singles(
-        &self,
-        pieces: Vec<PieceRows>,
-        gains: &Gains<'_>,
-        set: &[Candidate],
-    ) -> Vec<Candidate> {
-        let all = gains.of_all(&pieces, f64::INFINITY);
-        let is_there = |piece: &PieceRows| {
-            let id = piece.effect.id;
-            let brings =
-                |other: &PieceRows| other.joint == piece.joint && other.effect.brings.contains(&id);
-            set.iter().any(|of| of.effect.id == id || of.pieces.iter().any(brings))
-        };
-        let mut best: Vec<(f64, PieceRows)> = Vec::new();
-        for (piece, gain) in pieces.into_iter().zip(all) {
-            let net = gain - self.cost_of(&piece);
-            if net <= 0.0 || is_there(&piece) {
-                continue;
-            }
-            let is_like =
-                |of: &PieceRows| of.effect.id == piece.effect.id && of.joint == piece.joint;
-            match best.iter_mut().find(|(_, of)| is_like(of)) {
-                Some(known) if net > known.0 => *known = (net, piece),
-                Some(_) => {}
-                None => best.push((net, piece)),
-            }
-        }
-        best.sort_by(|a, b| b.0.total_cmp(&a.0));
-        best.truncate(SINGLES);
-        let single = |(_, piece): (f64, PieceRows)| {
-            // What acts by itself explains nothing with a wrong shape.
-            let piece = if piece.is_fixed() { self.best_shape(gains, &piece) } else { piece };
-            Candidate {
-                effect: piece.effect,
-                cost: self.design.tunables.effect_cost + self.cost_of(&piece),
-                pieces: vec![piece],
-                is_everyday: false,
-            }
-        };
-        best.into_par_iter().map(single).collect()
     }
 
     /// The fit with a set of effects.
@@ -142,8 +118,9 @@ impl Search<'_> {
         steps: [usize; 2],
     ) -> Option<Found> {
         let pieces = effects.iter().flat_map(|of| of.pieces.iter().cloned());
-        let members = pieces.map(|piece| Member::new(self.design, self.records, piece)).collect();
-        let hypothesis = Hypothesis { members };
+        let member =
+            |piece: PieceRows| Member::new(self.design, self.logs(piece.in_baseline), piece);
+        let hypothesis = Hypothesis { members: pieces.map(member).collect() };
         let start = Start::near(self.design, &hypothesis, [none.fit.known(), near.fit.known()]);
         let fit = fitted(self.design, hypothesis, start, steps)?;
         let cost: f64 = effects.iter().map(|of| of.cost).sum();
@@ -153,18 +130,29 @@ impl Search<'_> {
         Some(Found { effects, fit, score })
     }
 
-    /// What everyday errors cost that are larger than any robot's \[nats\].
+    /// What everyday errors cost that are larger than any robot's \[nats\]. A baseline shows those of
+    /// this one: what is more than they are counts.
     fn beyond_usual(&self, fit: &Fit) -> f64 {
         let joints = 0..self.design.joints.len();
         let over = joints.map(|joint| {
-            let share = fit.everyday(self.design, joint) / self.design.tunables.usual_error;
+            let share = self.left(fit, joint) / self.design.tunables.usual_error;
             0.5 * (share.ln().max(0.0) / TAIL).powi(2)
         });
         over.sum()
     }
 
+    /// Everyday errors of a joint that the baseline does not have, of its torque.
+    pub(super) fn left(&self, fit: &Fit, joint: usize) -> f64 {
+        if self.has_baseline() {
+            fit.changed(self.design, joint)
+        } else {
+            fit.everyday(self.design, joint)
+        }
+    }
+
     /// The best set, with all sets that were fitted. Effects of the size of a finding are added while the
-    /// evidence grows, then those of everyday size, all at once: what these explain as well goes.
+    /// evidence grows, and so are those that explain most where the baseline has them, too; then those of
+    /// everyday size, all at once: what these explain as well goes.
     #[must_use]
     pub(in crate::gap) fn best(&self, none: Found) -> Searched {
         let mut tried = vec![none.tried()];
@@ -176,7 +164,9 @@ impl Search<'_> {
             near.extend(next.iter().take(REFINED).cloned());
             next.retain(|of| of.score > best.score + self.design.tunables.least_nats);
             let is_finding = |of: &&Found| of.places() > best.places();
-            let first = next.iter().find(is_finding).filter(|of| of.places() <= MOST).cloned();
+            let is_of_robot = |of: &&Found| of.in_baseline().count() > best.in_baseline().count();
+            let first = next.iter().find(is_finding).filter(|of| of.places() <= MOST);
+            let first = next.first().filter(is_of_robot).or(first).cloned();
             let more = first.or_else(|| self.with_everyday(&none, &best, &next));
             match more {
                 Some(more) => best = more,
@@ -193,9 +183,11 @@ impl Search<'_> {
     /// A set with the effects of everyday size that others have more.
     fn with_everyday(&self, none: &Found, found: &Found, others: &[Found]) -> Option<Found> {
         let mut effects = found.effects.clone();
-        for last in others.iter().filter_map(|of| of.effects.last()).filter(|of| of.is_everyday) {
-            let is_known = effects.iter().any(|of| of.effect.id == last.effect.id);
-            if !is_known && effects.iter().filter(|of| of.is_everyday).count() < MOST_EVERYDAY {
+        let is_small = |of: &&Candidate| of.is_everyday && !of.in_baseline();
+        for last in others.iter().filter_map(|of| of.effects.last()).filter(is_small) {
+            let key = |of: &Candidate| (of.effect.id, of.in_baseline());
+            let is_known = effects.iter().any(|of| key(of) == key(last));
+            if !is_known && effects.iter().filter(is_small).count() < MOST_EVERYDAY {
                 effects.push(last.clone());
             }
         }
@@ -237,7 +229,7 @@ impl Search<'_> {
         (id, joints): (&str, &[usize]),
     ) -> Option<Found> {
         let mut effects = found.effects.clone();
-        for of in effects.iter_mut().filter(|of| of.effect.id == id) {
+        for of in effects.iter_mut().filter(|of| of.effect.id == id && !of.in_baseline()) {
             let goes = |piece: &PieceRows| {
                 joints.is_empty() || piece.joint.is_some_and(|joint| joints.contains(&joint))
             };
@@ -291,21 +283,31 @@ impl Search<'_> {
         let (records, design) = (self.records, self.design);
         let windows = self.windows.par_iter();
         let windows = windows.flat_map_iter(|of| of.best(records, design, &gains));
-        let waves = self.waves.par_iter();
-        let waves = waves.flat_map_iter(|of| of.best(records, design, &gains));
+        let waves = || self.waves.par_iter();
+        let of_robot = self.as_now.par_iter().flat_map(|all| {
+            let own = waves().flat_map_iter(|of| of.best(all, design, &gains));
+            own.map(PieceRows::of_baseline)
+        });
+        let waves = waves().flat_map_iter(|of| of.best(records, design, &gains));
         let mut pieces = self.pieces.clone();
-        pieces.extend(windows.chain(waves).collect::<Vec<_>>());
-        let singles = self.singles(pieces, &gains, &found.effects);
+        pieces.extend(windows.chain(waves).chain(of_robot).collect::<Vec<_>>());
+        let [of_robot, new] = self.singles(pieces, &gains, &found.effects);
         let look = |candidate: Candidate| {
             let mut effects = found.effects.clone();
             effects.push(candidate);
             self.possible([none, found], self.fit([none, found], effects, LOOK)?)
         };
-        let looked: Vec<Found> = singles.into_par_iter().filter_map(look).collect();
-        let joined = self.joined(found, looked).into_par_iter();
+        let single = |(_, piece): (f64, PieceRows)| {
+            // What acts by itself explains nothing with a wrong shape.
+            let piece = if piece.is_fixed() { self.best_shape(&gains, &piece) } else { piece };
+            look(self.candidate(vec![piece])?)
+        };
+        let singles: Vec<Found> = new.into_par_iter().take(SINGLES).filter_map(single).collect();
+        let joined = self.joined(found, singles).into_par_iter();
         let looked =
             |(candidate, single): (Candidate, Option<Found>)| single.or_else(|| look(candidate));
-        let mut all: Vec<Found> = joined.filter_map(looked).collect();
+        let of_robot = self.of_robot(of_robot).into_par_iter().filter_map(look);
+        let mut all: Vec<Found> = joined.filter_map(looked).chain(of_robot).collect();
         all.sort_by(|a, b| b.score.total_cmp(&a.score));
         let rest = all.split_off(all.len().min(REFINED));
         let refined = |of: Found| self.possible([none, found], self.refined(none, found, of));
@@ -315,39 +317,10 @@ impl Search<'_> {
         all
     }
 
-    /// The best effects at all joints at which they explain something, from sets with one piece more than
-    /// `found`; where that is one joint, with its set.
-    fn joined(&self, found: &Found, singles: Vec<Found>) -> Vec<(Candidate, Option<Found>)> {
-        let effect_cost = self.design.tunables.effect_cost;
-        let gain = |of: &Found| of.score - found.score + effect_cost;
-        let mut by_effect: Vec<(&'static str, Vec<Found>)> = Vec::new();
-        for of in singles.into_iter().filter(|of| gain(of) > 0.0) {
-            let Some(id) = of.effects.last().map(|last| last.effect.id) else { continue };
-            match by_effect.iter_mut().find(|(known, _)| *known == id) {
-                Some((_, all)) => all.push(of),
-                None => by_effect.push((id, vec![of])),
-            }
-        }
-        let of_effect = |(_, all): (&str, Vec<Found>)| {
-            let score: f64 = all.iter().map(gain).sum();
-            let mut candidate = all.first()?.effects.last()?.clone();
-            let pieces = all.iter().filter_map(|of| of.effects.last()).flat_map(|of| &of.pieces);
-            candidate.pieces = pieces.cloned().collect();
-            let costs = candidate.pieces.iter().map(|piece| self.cost_of(piece));
-            candidate.cost = effect_cost + costs.sum::<f64>();
-            let single = if all.len() == 1 { all.into_iter().next() } else { None };
-            Some((score, (candidate, single)))
-        };
-        let mut all: Vec<_> = by_effect.into_iter().filter_map(of_effect).collect();
-        all.sort_by(|a, b| b.0.total_cmp(&a.0));
-        all.truncate(FULL);
-        all.into_iter().map(|(_, of)| of).collect()
-    }
-
     /// A piece with the best shape beside a fit.
     fn best_shape(&self, gains: &Gains<'_>, piece: &PieceRows) -> PieceRows {
         let moves = moves(piece.effect, self.records, piece);
-        let (design, records) = (self.design, self.records);
+        let (design, records) = (self.design, self.logs(piece.in_baseline));
         let reshape = |of: &PieceRows, shape: &[f64]| of.reshaped(design, records, shape, false);
         let best = refined(gains, piece, &moves, lowest(records), &reshape);
         if best.shape == piece.shape {
@@ -392,12 +365,13 @@ impl Search<'_> {
                 && fitted[member].over_everyday().is_none_or(|over| over >= least)
         };
         let mut members = fitted.len() - last.pieces.len()..fitted.len();
-        last.is_everyday = last.effect.nature == Nature::Parameters || !members.any(is_large);
+        let is_no_change = last.effect.nature == Nature::Parameters || last.in_baseline();
+        last.is_everyday = is_no_change || !members.any(is_large);
         of
     }
 
     /// Prior cost of a piece \[nats\].
-    fn cost_of(&self, piece: &PieceRows) -> f64 {
+    pub(super) fn cost_of(&self, piece: &PieceRows) -> f64 {
         self.design.tunables.joint_cost + (piece.choices.max(1) as f64).ln()
     }
 

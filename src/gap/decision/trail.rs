@@ -31,6 +31,9 @@ pub enum Gate {
     Class,
     /// Evidence that the effect came after the baseline, and was not there already \[nats\], at least.
     Since,
+    /// Deviations of the effect from what it is in the baseline, or from 0, by how much it differs from log
+    /// to log \[1\], at least.
+    Logs,
 }
 
 /// The answer of a gate.
@@ -59,7 +62,8 @@ impl Gate {
             | Gate::Significance
             | Gate::Form
             | Gate::Everyday
-            | Gate::Since => false,
+            | Gate::Since
+            | Gate::Logs => false,
             Gate::Bounds | Gate::Noise | Gate::HeldOut | Gate::Unexplained | Gate::Class => true,
         }
     }
@@ -80,6 +84,7 @@ impl Gate {
             Gate::Unexplained => "share of the torque that nothing explains",
             Gate::Class => "effects that the logs cannot tell apart",
             Gate::Since => "evidence that it came after the baseline, nats",
+            Gate::Logs => "deviations by which it differs from log to log",
         }
     }
 

@@ -53,6 +53,8 @@ const DAYS: [Variable; 4] =
 pub(super) struct Local {
     pub(super) group: Group,
     pub(super) series: Vec<Vec<f64>>,
+    /// Of the mean friction of a log, the number of its record.
+    pub(super) friction_of: Option<usize>,
 }
 
 /// All everyday errors of a joint.
@@ -71,7 +73,7 @@ pub(super) fn everyday(records: &[Record<'_>], joint: usize, tunables: &Tunables
         let series = series.into_iter().zip(&is_mean).map(|(series, is_mean)| {
             if *is_mean { series.into_iter().map(|x| size * x).collect() } else { Vec::new() }
         });
-        all.push(Local { group, series: series.collect() });
+        all.push(Local { group, series: series.collect(), friction_of: None });
     };
     for variable in SMOOTH {
         for series in functions(variable, &motions, joint, tunables) {
@@ -148,7 +150,8 @@ fn of_logs(records: &[Record<'_>], joint: usize, tunables: &Tunables) -> Vec<Loc
                 let of = |(x, t): (&f64, &f64)| size * x * time.wave(*t, wave);
                 let mut by_record = vec![Vec::new(); records.len()];
                 by_record[number] = series.iter().zip(&motion.t).map(of).collect();
-                all.push(Local { group: Group::LogFriction, series: by_record });
+                let friction_of = (wave == 0).then_some(number);
+                all.push(Local { group: Group::LogFriction, series: by_record, friction_of });
             }
         }
     }

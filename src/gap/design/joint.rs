@@ -69,6 +69,9 @@ pub struct JointDesign {
     pub transposed: DMatrix<f64>,
     /// Groups of the everyday errors.
     pub groups: Vec<Group>,
+    /// Number of the record and column, among the everyday errors, of each mean friction of a log: dry,
+    /// then viscous, record by record.
+    pub friction: Vec<(usize, usize)>,
     /// Whether a log shows how its repetitions drift.
     pub shows_drift: bool,
     /// Products of `[y, base]` of each cell.
@@ -104,6 +107,7 @@ impl JointDesign {
             base: DMatrix::zeros(0, 0),
             transposed: DMatrix::zeros(0, 0),
             groups: Vec::new(),
+            friction: Vec::new(),
             shows_drift: records.iter().any(|record| record.kind == RecordKind::Drift),
             grams: Vec::new(),
         };
@@ -127,6 +131,9 @@ impl JointDesign {
         design.transposed = base.transpose();
         design.base = base;
         design.groups = local.iter().map(|of| of.group).collect();
+        let friction = local.iter().enumerate();
+        let friction = friction.filter_map(|(column, of)| Some((of.friction_of?, column)));
+        design.friction = friction.collect();
         design.grams = design.cells.iter().map(|cell| design.gram(cell)).collect();
         design
     }

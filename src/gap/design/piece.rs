@@ -1,6 +1,6 @@
 //! The columns of effects as rows of the joints that they reach.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::brought::{Brought, BroughtEffect};
@@ -34,6 +34,8 @@ pub struct PieceRows {
     pub rows: Vec<(usize, DMatrix<f64>)>,
     /// The effects that it brings along.
     pub(in crate::gap) brought: Vec<BroughtEffect>,
+    /// Whether it acts in the baseline, too: the robot has it, and it is no change.
+    pub(in crate::gap) in_baseline: bool,
 }
 
 /// An effect that acts all the time, to be cut to windows.
@@ -232,7 +234,7 @@ pub(in crate::gap) fn piece_at(
     let own = to_rows(design, records, of.effect, piece);
     let reached = reached(std::slice::from_ref(&own));
     let brought = brought_rows(design, records, of.effect, (joint, &reached));
-    own.with_brought(&brought)
+    PieceRows { in_baseline: of.in_baseline, ..own.with_brought(&brought) }
 }
 
 /// Joints that pieces reach.
@@ -269,6 +271,7 @@ pub(in crate::gap) fn link_pieces(design: &Design, effect: &'static Effect) -> P
                 prior: vec![(0.0, 1.0); RIGID],
                 rows: rows.collect(),
                 brought: Vec::new(),
+                in_baseline: false,
             }
         })
         .collect()
@@ -283,8 +286,24 @@ impl PieceRows {
         shape: Vec<f64>,
         choices: usize,
     ) -> PieceRows {
-        let (prior, rows, brought) = (Vec::new(), Vec::new(), Vec::new());
-        PieceRows { effect, joint: Some(joint), shape, choices, own: 0, prior, rows, brought }
+        PieceRows {
+            effect,
+            joint: Some(joint),
+            shape,
+            choices,
+            own: 0,
+            prior: Vec::new(),
+            rows: Vec::new(),
+            brought: Vec::new(),
+            in_baseline: false,
+        }
+    }
+
+    /// The same effect of a robot that has it in the baseline, too; its rows are of records as they are
+    /// now.
+    #[must_use]
+    pub(in crate::gap) fn of_baseline(self) -> PieceRows {
+        PieceRows { in_baseline: true, ..self }
     }
 
     /// The same effect with other values of its shape; tangents tell how it changes with them.
@@ -300,7 +319,33 @@ impl PieceRows {
         let columns = columns_at(self.effect, records, joint, shape, with_tangents);
         let piece =
             Piece { joint: self.joint, shape: shape.to_vec(), choices: self.choices, columns };
-        to_rows(design, records, self.effect, piece).with_brought(&self.brought())
+        let rows = to_rows(design, records, self.effect, piece).with_brought(&self.brought());
+        PieceRows { in_baseline: self.in_baseline, ..rows }
+    }
+
+    /// What it adds with some factors to one record, as a column.
+    #[must_use]
+    pub(in crate::gap) fn in_record(
+        &self,
+        design: &Design,
+        record: usize,
+        factors: &DVector<f64>,
+    ) -> PieceRows {
+        let column = |(joint, rows): &(usize, DMatrix<f64>)| {
+            let mut column = rows * factors;
+            let cells = design.joints[*joint].cells.iter();
+            for cell in cells.filter(|cell| cell.record != record) {
+                column.rows_mut(cell.rows.start, cell.rows.len()).fill(0.0);
+            }
+            (*joint, DMatrix::from_columns(&[column]))
+        };
+        PieceRows {
+            own: 1,
+            prior: vec![(0.0, 1.0)],
+            rows: self.rows.iter().map(column).collect(),
+            brought: Vec::new(),
+            ..self.clone().without_rows()
+        }
     }
 
     /// The piece at its shape alone.
@@ -449,5 +494,6 @@ fn to_rows(
         prior: piece.columns.iter().map(|column| (column.mean, column.sd)).collect(),
         rows,
         brought: Vec::new(),
+        in_baseline: false,
     }
 }

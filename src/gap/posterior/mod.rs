@@ -9,6 +9,7 @@
 mod amplitude;
 mod blocked;
 mod fit;
+mod friction;
 mod gain;
 mod hypothesis;
 mod members;
@@ -21,6 +22,6 @@ mod windows;
 pub(in crate::gap) use fit::{Fit, fitted, fitted_as_written};
 pub(in crate::gap) use gain::Gains;
 pub(in crate::gap) use hypothesis::{Hypothesis, Member};
-pub(in crate::gap) use sizes::{JointSizes, Sizes, TAIL, halfway, usual};
+pub(in crate::gap) use sizes::{MOST_OF_FRICTION, Sizes, TAIL, halfway, usual};
 pub(in crate::gap) use start::Start;
 pub(in crate::gap) use windows::WindowGains;

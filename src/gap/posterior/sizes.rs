@@ -63,7 +63,7 @@ impl Size {
 /// Standard deviation of the logarithm of a size above the largest usual one.
 pub(in crate::gap) const TAIL: f64 = 0.2;
 /// Largest change of friction from log to log, of its median: EFFECTS.md has 1 to 3 % from day to day.
-const MOST_OF_FRICTION: f64 = 3.0;
+pub(in crate::gap) const MOST_OF_FRICTION: f64 = 3.0;
 /// Number of the noise of logs that do not repeat, of the torque.
 pub(super) const NOISE: usize = 6;
 /// Number of what no form of a law explains, of the law.
@@ -120,13 +120,6 @@ impl JointSizes {
     #[must_use]
     pub(in crate::gap) fn of(&self, group: Group) -> f64 {
         self.groups.iter().find(|(of, _)| *of == group).map_or(1.0, |(_, size)| size.value)
-    }
-
-    /// Whether friction differs from log to log by more than it usually does.
-    #[must_use]
-    pub(in crate::gap) fn has_other_friction(&self) -> bool {
-        let of = self.groups.iter().find(|(group, _)| *group == Group::LogFriction);
-        of.is_some_and(|(_, size)| size.beyond() > 0.0)
     }
 
     /// Sets the prior of a law's form; `law` is the size of the law.
