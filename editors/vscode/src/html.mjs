@@ -27,7 +27,12 @@ export function page({ script, style, source, nonce }) {
 <main id="drawing" hidden>
   <canvas id="canvas" tabindex="0" role="application" aria-label="Path of the tool in 3-D" aria-describedby="keys"></canvas>
   <div id="tip" hidden></div>
-  <figure id="legend"><div id="scale"></div><div><span id="least"></span><span id="middle"></span><span id="most"></span></div></figure>
+  <figure id="legend">
+    <figcaption>Electrical power</figcaption>
+    <div id="scale"></div>
+    <div id="ends"><span id="least"></span><span id="middle"></span><span id="most"></span></div>
+    <div id="mesh"></div>
+  </figure>
   <p id="keys">Drag or arrow keys: turn. With Shift: move. Wheel or + and −: zoom. Page Up and Page Down: the movement before and after. Enter: its line.</p>
 </main>
 <p id="current" aria-live="polite"></p>

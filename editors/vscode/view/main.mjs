@@ -79,6 +79,7 @@ function showLegend() {
   element("least").textContent = watts(least);
   element("middle").textContent = watts((least + most) / 2);
   element("most").textContent = watts(most);
+  element("mesh").textContent = `Lines of the floor: ${Math.round(content.scene.step * 1000)} mm`;
 }
 
 /** @param {"busy" | "error" | "path"} what */

@@ -15,7 +15,9 @@
 /** The eye is so many radii away from the centre. */
 const DISTANCE = 4;
 /** The radius in the smaller side of the screen. */
-const FIT = 0.46;
+const FIT = 0.48;
+/** Of the ball around a single point, m. */
+const MIN_RADIUS = 0.05;
 const MAX_PITCH = Math.PI / 2;
 const ZOOM = { min: 0.2, max: 50 };
 
@@ -23,7 +25,7 @@ const ZOOM = { min: 0.2, max: 50 };
 export const FIRST = { yaw: -0.9, pitch: 0.5, zoom: 1, right: 0, down: 0 };
 
 /**
- * The smallest box around points, as the ball through its corners.
+ * The ball around points, with the centre of their smallest box.
  * @param {number[]} points x, y, z of each
  * @returns {Ball}
  */
@@ -37,9 +39,12 @@ export function ballAround(points) {
   if (points.length === 0) {
     return { centre: [0, 0, 0], radius: 1 };
   }
-  const middle = (/** @type {number} */ axis) => (least[axis] + most[axis]) / 2;
-  const radius = Math.hypot(...least.map((low, axis) => most[axis] - low)) / 2;
-  return { centre: [middle(0), middle(1), middle(2)], radius: Math.max(radius, 0.05) };
+  const [x, y, z] = least.map((low, axis) => (low + most[axis]) / 2);
+  let radius = MIN_RADIUS;
+  for (let at = 0; at < points.length; at += 3) {
+    radius = Math.max(radius, Math.hypot(points[at] - x, points[at + 1] - y, points[at + 2] - z));
+  }
+  return { centre: [x, y, z], radius };
 }
 
 /**
