@@ -9,7 +9,7 @@ import { ballAround } from "./projection.mjs";
  */
 
 /** About how many meshes the floor has along its longer side. */
-const MESHES = 8;
+const MESHES = 10;
 
 /**
  * The distance of the floor's lines: 1, 2 or 5 times a power of ten, m.
@@ -43,7 +43,7 @@ export function scene({ points }) {
   for (let j = front; j <= back; j += 1) {
     grid.push({ from: [left * step, j * step, floor], to: [right * step, j * step, floor] });
   }
-  return { ball, grid, step, axis: 1.5 * step };
+  return { ball, grid, step, axis: 2 * step };
 }
 
 /**

@@ -3,7 +3,7 @@ import { test } from "node:test";
 import { mesh, neighbour, scene, segmentsOf } from "../../view/scene.mjs";
 
 test("meshes are 1, 2 or 5 times a power of ten", () => {
-  assert.deepEqual([8, 1, 2, 0.09].map(mesh), [1, 0.2, 0.5, 0.02]);
+  assert.deepEqual([10, 1.2, 3, 0.6].map(mesh), [1, 0.2, 0.5, 0.1]);
 });
 
 test("the floor is below the path and the base", () => {

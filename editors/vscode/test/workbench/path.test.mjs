@@ -32,7 +32,7 @@ before(async () => {
 });
 
 after(async () => {
-  await code?.stop();
+  await code.stop();
   await rm(program, { recursive: true });
 });
 
@@ -73,12 +73,12 @@ test("a click on a movement goes to its line", async () => {
   await workbench.page.mouse.down();
   await workbench.page.mouse.up();
   await workbench.page.waitForSelector(`.tab.active[data-resource-name="${file}"]`, { timeout: 30_000 });
-  await workbench.statusHas(`Ln ${line}, `);
+  await workbench.textIn(".line-numbers.active-line-number", String(line));
 });
 
 test("the movements of the cursor's line are marked", async () => {
   const view = await workbench.view();
-  await workbench.openFile("PickPlace.mod");
+  await workbench.showTab("PickPlace.mod");
   await workbench.goTo(1);
   const plain = await view.picture();
   await workbench.goTo(13);
@@ -91,8 +91,8 @@ test("the movements of the cursor's line are marked", async () => {
 
 test("keys turn the scene and step through the movements", async () => {
   const view = await workbench.view();
+  await view.focus();
   const first = await view.picture();
-  await view.frame.focus("#canvas");
   await workbench.page.keyboard.press("ArrowLeft");
   assert.notEqual(await view.picture(), first);
   await workbench.page.keyboard.press("0");
@@ -104,7 +104,7 @@ test("keys turn the scene and step through the movements", async () => {
 test("a simulation that fails shows its message", async () => {
   const view = await workbench.view();
   await writeFile(join(program, "joulepath.toml"), 'robot = "none"\n');
-  await (await view.frame.$("#again"))?.click();
+  await view.press("again");
   await view.says("message", "none");
   await writeFile(join(program, "joulepath.toml"), 'robot = "IRB1600-10/1.45"\n');
 });
@@ -117,6 +117,6 @@ test("a program without movements has an empty path", async () => {
     }
   }
   await writeFile(join(program, "PickPlace.mod"), "MODULE PickPlace\n  PROC main()\n  ENDPROC\nENDMODULE\n");
-  await (await view.frame.$("#again"))?.click();
+  await view.press("again");
   await view.says("title", "nothing moves");
 });

@@ -1,7 +1,7 @@
 // What a user does in VS Code.
 
 const WAIT = { timeout: 30_000 };
-const PALETTE_MS = 3_000;
+const PALETTE = { timeout: 3_000 };
 const POLL_MS = 100;
 
 export class Workbench {
@@ -29,20 +29,29 @@ export class Workbench {
   }
 
   /**
-   * Runs a command of the palette. The palette lists what was there when it opened: soon after the start, it is opened
-   * more than once.
+   * Goes to an open file.
+   * @param {string} name
+   */
+  async showTab(name) {
+    await this.page.locator(`.tab[data-resource-name="${name}"]`).click();
+  }
+
+  /**
+   * Runs a command of the palette. The palette is opened more than once, because it lists what was there when it opened,
+   * and a key that comes while the focus changes is lost.
    * @param {string} title
    */
   async run(title) {
     const end = Date.now() + WAIT.timeout;
     for (;;) {
-      await this.page.keyboard.press("F1");
-      await this.page.waitForSelector(".quick-input-widget:not([style*='display: none']) input", WAIT);
-      await this.page.keyboard.type(title);
       try {
-        await this.page.waitForSelector(`.quick-input-list .monaco-list-row.focused[aria-label^="${title}"]`, {
-          timeout: PALETTE_MS,
-        });
+        await this.page.keyboard.press("F1");
+        await this.page.waitForSelector(".quick-input-widget:not([style*='display: none']) input", PALETTE);
+        await this.page.keyboard.type(title);
+        await this.page.waitForSelector(
+          `.quick-input-list .monaco-list-row.focused[aria-label^="${title}"]`,
+          PALETTE,
+        );
         break;
       } catch (error) {
         if (Date.now() > end) {
@@ -87,7 +96,8 @@ export class Workbench {
     const end = Date.now() + WAIT.timeout;
     while (Date.now() < end) {
       for (const frame of this.page.frames()) {
-        if (await frame.$("#legend").catch(() => null)) {
+        // Only the page's own world survives the way in which VS Code writes the page.
+        if (await frame.evaluate(() => document.getElementById("legend") !== null).catch(() => false)) {
           return new View(this.page, frame);
         }
       }
@@ -156,17 +166,41 @@ export class View {
     });
   }
 
+  /**
+   * Where a place of the canvas is in the window.
+   * @param {number} column 0: left, 1: right
+   * @param {number} row 0: top, 1: bottom
+   */
+  async place(column, row) {
+    const outer = await (await this.page.$("iframe.webview.ready"))?.boundingBox();
+    if (!outer) {
+      throw new Error("no view");
+    }
+    const inner = await this.frame.evaluate(() => {
+      const { x, y, width, height } = /** @type {HTMLElement} */ (document.getElementById("canvas")).getBoundingClientRect();
+      return { x, y, width, height };
+    });
+    return { x: outer.x + inner.x + column * inner.width, y: outer.y + inner.y + row * inner.height };
+  }
+
+  /** Clicks where nothing is drawn: the canvas has the focus. */
+  async focus() {
+    const { x, y } = await this.place(0.03, 0.03);
+    await this.page.mouse.click(x, y);
+  }
+
+  /** @param {string} id of a button */
+  async press(id) {
+    await this.frame.evaluate((button) => document.getElementById(button)?.click(), id);
+  }
+
   /** Moves the pointer over the canvas until it is above a movement, and leaves it there. */
   async pointAtMovement() {
-    const canvas = await this.frame.$("#canvas");
-    const box = await canvas?.boundingBox();
-    if (!box) {
-      throw new Error("no canvas");
-    }
     for (let row = 0.15; row < 0.85; row += 0.03) {
       for (let column = 0.1; column < 0.9; column += 0.02) {
-        await this.page.mouse.move(box.x + column * box.width, box.y + row * box.height);
-        if (await this.frame.$eval("#tip", (tip) => tip.checkVisibility())) {
+        const { x, y } = await this.place(column, row);
+        await this.page.mouse.move(x, y);
+        if (await this.frame.evaluate(() => document.getElementById("tip")?.checkVisibility())) {
           return await this.says("tip", "line");
         }
       }
