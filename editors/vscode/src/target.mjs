@@ -1,6 +1,6 @@
 // What a command is about: the file or folder that it was called for, or the open file.
 import { dirname } from "node:path";
-import { window, workspace } from "vscode";
+import { commands, window, workspace } from "vscode";
 import { command } from "./command.mjs";
 import { programsOf } from "./program.mjs";
 import { settings } from "./settings.mjs";
@@ -17,6 +17,8 @@ let latest;
 export function remember(editor) {
   if (editor?.document.languageId === "rapid" && editor.document.uri.scheme === "file") {
     latest = editor.document.uri;
+    // The walk-through asks for it.
+    void commands.executeCommand("setContext", "joulepath.hasProgram", true);
   }
 }
 

@@ -78,8 +78,8 @@ function drawPath(context, { path, range, spots, marked, current }, { theme, for
   // What is marked has a border and is above the rest.
   for (const [pieces, width, fixed] of /** @type {const} */ ([
     [order, 2.5, undefined],
-    [chosen, 8, foreground],
-    [chosen, 5, undefined],
+    [chosen, 6.5, foreground],
+    [chosen, 4, undefined],
   ])) {
     for (const index of pieces) {
       context.strokeStyle = context.fillStyle = fixed ?? colour(share(path.power[index], range), theme);
