@@ -6,10 +6,9 @@ use super::evaluate::Cycle;
 use super::group::Group;
 use super::job::Job;
 use super::parsed::{ParsedFile, program};
-use super::process::{Kept, same_actions, same_order, same_process};
+use super::process::{Kept, same_order, same_process};
 use super::rule::{Family, Finding};
 use super::runs;
-use crate::rapid::ir::program::Program;
 use crate::rapid::text::{Edit, FileId};
 
 /// Rounding of an energy, J.
@@ -35,18 +34,6 @@ pub(super) fn offer_fixes(
         kept
     });
     let Some(before) = cycle else { return };
-    // A run without a robot tells most of those that change the order, and takes little time.
-    let recording = |program: &Program| runs::recording(program, program.entry(&group.entry));
-    let without = recording(&program(group, read));
-    open.retain(|index| {
-        let edits = findings[*index].fix.iter().flat_map(|fix| fix.edits.iter().cloned());
-        let after = edited(job, group, read, &edits.collect::<Vec<Edit>>());
-        let kept = after.is_some_and(|it| same_actions(&without.trace(), &recording(&it).trace()));
-        if !kept {
-            findings[*index].fix = None;
-        }
-        kept
-    });
     while !open.is_empty() {
         let together = disjoint(&open, findings);
         open.retain(|index| !together.contains(index));
@@ -108,22 +95,6 @@ fn keeps_work(
     before: &Cycle,
     edits: &[Edit],
 ) -> bool {
-    let Some(program) = edited(job, group, read, edits) else { return false };
-    let after = runs::cycle(job, &program, program.entry(&group.entry));
-    job.model.zip(after).is_some_and(|(model, after)| {
-        after.account.total.energy_j() <= before.account.total.energy_j() + ROUNDING
-            && same_order(&before.simulation, &after.simulation)
-            && same_process(model, &before.simulation, &after.simulation, Kept::Waits)
-    })
-}
-
-/// The program with some edits; `None` where they make a syntax error.
-fn edited(
-    job: &Job<'_>,
-    group: &Group,
-    read: &[Arc<ParsedFile>],
-    edits: &[Edit],
-) -> Option<Program> {
     let mut read = read.to_vec();
     for index in &group.files {
         let file = &job.files[*index];
@@ -132,11 +103,18 @@ fn edited(
         if own.is_empty() {
             continue;
         }
-        let parsed = ParsedFile::new(&file.edited(&own).ok()?);
+        let Ok(edited) = file.edited(&own) else { return false };
+        let parsed = ParsedFile::new(&edited);
         if parsed.errors.len() > read[*index].errors.len() {
-            return None;
+            return false;
         }
         read[*index] = Arc::new(parsed);
     }
-    Some(program(group, &read))
+    let program = program(group, &read);
+    let after = runs::cycle(job, &program, program.entry(&group.entry));
+    job.model.zip(after).is_some_and(|(model, after)| {
+        after.account.total.energy_j() <= before.account.total.energy_j() + ROUNDING
+            && same_order(&before.simulation, &after.simulation)
+            && same_process(model, &before.simulation, &after.simulation, Kept::Waits)
+    })
 }

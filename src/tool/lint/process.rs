@@ -1,7 +1,7 @@
 //! Whether two cycles do the same work: the same waits and outputs in the same order.
 
 use super::evaluate::POSITION_TOLERANCE;
-use super::trace::{self, Action, TraceStep};
+use super::trace::{self, Action};
 use crate::arm::kinematics::fk;
 use crate::arm::robot::Model;
 use crate::rapid::ir::movement::Target;
@@ -44,19 +44,15 @@ pub fn same_process(model: &Model, before: &Simulation, after: &Simulation, kept
         && problems(&after.events) <= problems(&before.events)
 }
 
-/// Whether two simulations do the same in the same order.
+/// Whether two simulations have the same targets, waits and outputs in the same order; a target that
+/// follows itself counts once.
 pub fn same_order(before: &Simulation, after: &Simulation) -> bool {
-    same_actions(&trace::of_events(&before.events), &trace::of_events(&after.events))
+    ordered(&before.events) == ordered(&after.events)
 }
 
-/// Whether two traces have the same targets, waits and outputs in the same order; a target that follows
-/// itself counts once.
-pub fn same_actions(before: &[TraceStep<'_>], after: &[TraceStep<'_>]) -> bool {
-    ordered(before) == ordered(after)
-}
-
-/// What a trace does, in order.
-fn ordered(done: &[TraceStep<'_>]) -> Vec<Done> {
+/// What a simulation does, in order.
+fn ordered(events: &[Event]) -> Vec<Done> {
+    let done = trace::of_events(events);
     let mut all: Vec<Done> = done
         .iter()
         .filter_map(|it| {
