@@ -91,4 +91,16 @@ fn files_named_in_the_manifest_exist() {
     ] {
         assert!(folder.join(path.as_str().unwrap()).is_file(), "{path}");
     }
+    // The program of the extension is bundled from files that exist.
+    let build = fs::read_to_string(folder.join("esbuild.mjs")).unwrap();
+    let main = manifest["main"].as_str().unwrap().trim_start_matches("./");
+    assert!(build.contains(&format!("outfile: \"{main}\"")), "{main}");
+    let sources: Vec<&str> = build
+        .split('"')
+        .filter(|text| ["src/", "view/"].iter().any(|folder| text.starts_with(folder)))
+        .collect();
+    assert!(sources.len() > 1, "{sources:?}");
+    for source in sources {
+        assert!(folder.join(source).is_file(), "{source}");
+    }
 }

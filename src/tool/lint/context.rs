@@ -224,13 +224,18 @@ impl<'c> Context<'c> {
         self.flow.following(self.sites[site].place, through)
     }
 
+    /// The movement statement of a next action.
+    pub fn movement(&self, next: &Next) -> Option<usize> {
+        match next {
+            Next::Move(place) => self.by_place.get(place).copied(),
+            _ => None,
+        }
+    }
+
     /// The movements that can follow a movement, if nothing else can come first.
     pub fn next_moves(&self, site: usize, through: Through) -> Option<Vec<usize>> {
         let next = self.next(site, through);
-        let moves = next.iter().map(|next| match next {
-            Next::Move(place) => self.by_place.get(place).copied(),
-            _ => None,
-        });
+        let moves = next.iter().map(|next| self.movement(next));
         moves.collect::<Option<Vec<usize>>>().filter(|moves| !moves.is_empty())
     }
 

@@ -15,6 +15,8 @@ const MAX_TURN_ON: f64 = 0.9;
 const MIN_SPEED: f64 = 0.25;
 /// Fewest movements with a part.
 const MIN_MOVES: usize = 2;
+/// Loads up to this are none, kg: `load0` has one gram.
+pub(super) const NO_LOAD: f64 = 0.01;
 /// Most steps between a set and a reset that belong together.
 const MAX_STEPS_BETWEEN: usize = 500;
 
@@ -81,7 +83,7 @@ impl Context<'_> {
         self.sites[site].executions.iter().any(|step| {
             let movement = self.trace[*step].what.movement();
             let load = movement.and_then(|movement| movement.settings.grip_load);
-            steps.contains(step) || load.is_some_and(|load| load.mass > 0.0)
+            steps.contains(step) || load.is_some_and(|load| load.mass > NO_LOAD)
         })
     }
 

@@ -24,8 +24,8 @@ pub(super) fn severity(finding: &Finding) -> Severity {
 }
 
 /// The findings with joules that are most worth a look, at most `count`: those of which the rule is
-/// sure, then the others, each by joules. Findings at one place
-/// of which the rule is equally sure are alternatives: only the first counts.
+/// sure, then the others, each by joules. Findings at one place of which the rules are equally sure are
+/// alternatives: only the first counts.
 #[must_use]
 pub fn top(findings: &[Finding], count: usize) -> Vec<&Finding> {
     let mut ranked: Vec<&Finding> =

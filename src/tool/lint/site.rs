@@ -58,6 +58,9 @@ pub struct Facts {
     pub goal: Option<Goal>,
 }
 
+/// What RAPID writes for an external axis that does not exist.
+const NO_AXIS: f64 = 9e9;
+
 /// The goal of a movement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Goal {
@@ -100,8 +103,14 @@ impl Goal {
             }
             _ => false,
         };
-        is_same_place && self.external == other.external
+        is_same_place && moves_no_axis(self.external.as_ref(), other.external.as_ref())
     }
+}
+
+/// Whether external axes stay between two goals. An axis with 9E9 does not exist; unknown goals differ.
+fn moves_no_axis(a: Option<&[f64; 6]>, b: Option<&[f64; 6]>) -> bool {
+    let is_still = |(a, b): (&f64, &f64)| a == b || a.max(*b) >= NO_AXIS;
+    a.zip(b).is_some_and(|(a, b)| a.iter().zip(b).all(is_still))
 }
 
 impl Site<'_> {

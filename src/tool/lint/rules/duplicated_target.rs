@@ -61,20 +61,18 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
             && !is_placeholder(&value)
             && value.first_unknown().is_none()
         {
-            same.entry((data.name.span.file.0 as usize, format!("{value:?}")))
-                .or_default()
-                .push(id);
+            same.entry((id.module, format!("{value:?}"))).or_default().push(id);
         }
     }
-    let mut of_file: BTreeMap<usize, Vec<(DataId, DataId)>> = BTreeMap::new();
-    for ((file, _), targets) in same {
+    let mut of_module: BTreeMap<usize, Vec<(DataId, DataId)>> = BTreeMap::new();
+    for ((module, _), targets) in same {
         let others = targets.iter().skip(1).map(|other| (targets[0], *other));
-        of_file.entry(file).or_default().extend(others);
+        of_module.entry(module).or_default().extend(others);
     }
-    findings.extend(of_file.values().filter_map(|pairs| duplicated(context, pairs)));
+    findings.extend(of_module.values().filter_map(|pairs| duplicated(context, pairs)));
 }
 
-/// One finding for the pairs of a file: what wrote them is the cause.
+/// One finding for the pairs of a module: what wrote them is the cause.
 fn duplicated(context: &Context<'_>, pairs: &[(DataId, DataId)]) -> Option<Finding> {
     let name = |id: DataId| &context.program.data(id).name;
     let ((first, second), others) = pairs.split_first()?;

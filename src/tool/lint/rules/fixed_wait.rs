@@ -40,6 +40,7 @@ use super::super::saving::Saving;
 use super::super::trace::Action;
 use crate::arm::robot::Model;
 use crate::rapid::ir::exec::NO_END;
+use crate::rapid::ir::movement::Output;
 use crate::rapid::text::{FileId, Span};
 use crate::retime::energy::EnergyParts;
 use crate::retime::motion::timeline::WaitBasis;
@@ -107,7 +108,10 @@ fn is_fixed(context: &Context<'_>, step: usize) -> bool {
     let Action::Wait(wait, _) = &context.trace[step].what else { return false };
     let is_pulse = || {
         let [before, after] = [step.wrapping_sub(1), step + 1].map(|at| output(context, at));
-        before.is_some() && (before == after || is_pulse_instruction(context, step - 1))
+        before.is_some_and(|before| {
+            before.instruction.eq_ignore_ascii_case("pulsedo")
+                || after.is_some_and(|after| after.signal == before.signal)
+        })
     };
     wait.instruction.eq_ignore_ascii_case("waittime")
         && context.trace[step].duration >= MIN_WAIT
@@ -121,28 +125,19 @@ fn beside(context: &Context<'_>, step: usize) -> Option<String> {
         Action::Wait(wait, _) => wait.signal.as_ref().map(ToString::to_string),
         _ => None,
     };
+    let signal = |output: &Output| output.signal.to_string();
     let before = step.checked_sub(1);
     before
-        .and_then(|at| output(context, at).or_else(|| input(at)))
+        .and_then(|at| output(context, at).map(signal).or_else(|| input(at)))
         .or_else(|| input(step + 1))
-        .or_else(|| output(context, step + 1).filter(|_| sets(context, step + 1)))
+        .or_else(|| output(context, step + 1).filter(|it| it.value != "0").map(signal))
 }
 
-fn output(context: &Context<'_>, step: usize) -> Option<String> {
-    match &context.trace.get(step)?.what {
-        Action::Output(output) => Some(output.signal.to_string()),
+fn output<'c>(context: &Context<'c>, step: usize) -> Option<&'c Output> {
+    match context.trace.get(step)?.what {
+        Action::Output(output) => Some(output),
         _ => None,
     }
-}
-
-/// Whether an output is set, and not reset.
-fn sets(context: &Context<'_>, step: usize) -> bool {
-    matches!(&context.trace[step].what, Action::Output(output) if output.value != "0")
-}
-
-/// Whether an output goes back by itself after the time of its pulse.
-fn is_pulse_instruction(context: &Context<'_>, step: usize) -> bool {
-    matches!(&context.trace[step].what, Action::Output(it) if it.instruction.eq_ignore_ascii_case("pulsedo"))
 }
 
 /// What the waits take in a cycle, J; none for a program that does not come to its end.

@@ -33,7 +33,7 @@ use std::collections::BTreeSet;
 
 use super::super::context::Context;
 use super::super::edits::{change_movement, replace};
-use super::super::flow::{Next, Through};
+use super::super::flow::Through;
 use super::super::rule::Finding;
 use super::super::site::Site;
 use super::super::words;
@@ -93,11 +93,7 @@ fn lines_behind_are_simulated(context: &Context<'_>, span: Span) -> bool {
     let mut open: Vec<usize> = context.site_of(span).into_iter().collect();
     let mut seen = BTreeSet::new();
     while let Some(site) = open.pop() {
-        for next in context.next(site, Through::All) {
-            let Next::Move(place) = next else { continue };
-            let Some(next) = context.sites.iter().position(|it| it.place == place) else {
-                return false;
-            };
+        for next in context.next(site, Through::All).iter().filter_map(|it| context.movement(it)) {
             if !context.sites[next].is_linear() || !seen.insert(next) {
                 continue;
             }

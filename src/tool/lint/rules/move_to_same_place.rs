@@ -2,8 +2,8 @@
 //!
 //! ## What it does
 //! Finds movements whose goal is, on every way through the program, the goal of the movement
-//! before, with the same tool and work object. Those of a file are one finding with their number: what wrote
-//! them is the cause.
+//! before, with the same tool and work object. Statements of a file that repeat the one before word for
+//! word are one finding with their number: what wrote them is the cause.
 //!
 //! ## Why it wastes energy
 //! It moves nothing, but the controller plans it, waits for its stop point, and ends what would
@@ -36,7 +36,6 @@ use std::collections::BTreeMap;
 use super::super::context::Context;
 use super::super::edits::remove;
 use super::super::rule::{Finding, MAX_RELATED};
-use super::super::site::Site;
 use crate::rapid::ir::hir::{Arg, Expr, ExprKind};
 use crate::rapid::ir::program::Symbol;
 use crate::rapid::text::{Edit, FileId, Span};
@@ -47,7 +46,7 @@ const SHIFTS: [&str; 2] = ["offs", "reltool"];
 rule!("EW401", "move-to-same-place", Path, Text, Info, "move_to_same_place.rs");
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
-    // Those of a file have one cause: what wrote them.
+    // Statements that repeat the one before word for word have one cause: what wrote them.
     let mut repeated: BTreeMap<FileId, Vec<usize>> = BTreeMap::new();
     for (index, site) in context.sites.iter().enumerate() {
         let before = context.before(index);
@@ -63,7 +62,12 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         if site.is_stop() && before.iter().any(|before| !context.sites[*before].is_stop()) {
             continue;
         }
-        repeated.entry(site.stmt.span.file).or_default().push(index);
+        let text = |site: usize| words(context, context.sites[site].stmt.span);
+        if before.iter().all(|before| text(*before) == text(index)) {
+            repeated.entry(site.stmt.span.file).or_default().push(index);
+        } else {
+            findings.push(same_place(context, &[index]));
+        }
     }
     findings.extend(repeated.into_values().map(|sites| same_place(context, &sites)));
 }
@@ -76,7 +80,7 @@ fn same_place(context: &Context<'_>, sites: &[usize]) -> Finding {
         1 => (String::new(), "leaving it out".to_owned()),
         count => {
             let others = count - 1;
-            let what = format!(", and so do {others} others");
+            let what = format!(", and so do {others} others that repeat the statement before");
             (what, format!("leaving out all {count}"))
         }
     };
@@ -108,7 +112,13 @@ pub(super) fn same_goal(context: &Context<'_>, a: usize, b: usize) -> bool {
         && a.wobj_key().is_some()
         && a.wobj_key() == b.wobj_key()
         && [a, b].iter().all(|site| is_steady(context, site.place.0.module, site.target))
-        && (is_written_out(a.target) && is_written_out(b.target) || is_repeated(context, a, b))
+        && (is_written_out(a.target) && is_written_out(b.target)
+            || words(context, a.target.span) == words(context, b.target.span))
+}
+
+/// A text without regard to case and white space.
+fn words(context: &Context<'_>, span: Span) -> String {
+    context.text(span).to_lowercase().split_whitespace().collect()
 }
 
 /// Whether no function makes a target but those that shift the place: others may move external axes, too.
@@ -120,12 +130,6 @@ fn is_written_out(target: &Expr) -> bool {
         }
         _ => target.parts().into_iter().all(is_written_out),
     }
-}
-
-/// Whether two movements have the same target word for word.
-fn is_repeated(context: &Context<'_>, a: &Site<'_>, b: &Site<'_>) -> bool {
-    let [a, b] = [a, b].map(|site| context.text(site.target.span).to_lowercase());
-    a.split_whitespace().eq(b.split_whitespace())
 }
 
 /// Whether no name in a target stands for data that the program writes.

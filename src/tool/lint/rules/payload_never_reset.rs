@@ -37,6 +37,7 @@
 
 use super::super::context::Context;
 use super::super::flow::Place;
+use super::super::outputs::NO_LOAD;
 use super::super::rule::Finding;
 use super::super::site::parts;
 use super::super::statements::first_argument;
@@ -45,9 +46,6 @@ use crate::rapid::ir::hir::{Call, Stmt};
 use crate::rapid::ir::program::RoutineId;
 
 rule!("EW503", "payload-never-reset", Load, Text, Warning, "payload_never_reset.rs");
-
-/// Loads up to this are none, kg.
-pub(super) const NO_LOAD: f64 = 0.01;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     if context.entry.is_none() || context.flow.has_late_calls() {

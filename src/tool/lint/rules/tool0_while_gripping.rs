@@ -36,8 +36,9 @@ use std::collections::BTreeSet;
 
 use super::super::context::Context;
 use super::super::flow::Place;
+use super::super::outputs::NO_LOAD;
 use super::super::rule::Finding;
-use super::payload_never_reset::{NO_LOAD, has_gripper, payload_kg};
+use super::payload_never_reset::{has_gripper, payload_kg};
 
 rule!("EW504", "tool0-while-gripping", Load, Text, Warning, "tool0_while_gripping.rs");
 
