@@ -159,6 +159,59 @@ fn read_only_files_are_kept_and_links_stay_links() {
     assert_ne!(fs::read(&path).unwrap(), before);
 }
 
+/// With a cache the result is the same, and what has not changed is not linted again.
+#[test]
+fn a_cache_keeps_the_findings_of_unchanged_programs() {
+    let folder = folder("EW102_stop_in_line.mod");
+    fs::copy("fixtures/lint/EW101_unneeded_stop_point.mod", folder.path().join("Other.mod"))
+        .unwrap();
+    let lint = |more: &[&str]| {
+        let args = [&["lint", ".", "--format", "json"], &ROBOT[..], more].concat();
+        let output = joulepath_in(folder.path(), &args);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        stdout(&output)
+    };
+    let cache = folder.path().join(".joulepath_cache");
+    let reports = || {
+        let all = fs::read_dir(&cache).unwrap().map(|entry| entry.unwrap().path());
+        all.filter(|path| path.file_name().unwrap() != ".gitignore").collect::<Vec<_>>()
+    };
+    let plain = lint(&[]);
+    assert!(!cache.exists());
+    assert_eq!(lint(&["--cache"]), plain);
+    assert_eq!(reports().len(), 2);
+    assert_eq!(lint(&["--cache"]), plain);
+
+    // A mark in the kept findings shows where they are used.
+    let mark = || {
+        for path in reports() {
+            let text = fs::read_to_string(&path).unwrap();
+            fs::write(path, text.replace("\"message\":\"", "\"message\":\"kept: ")).unwrap();
+        }
+    };
+    mark();
+    let marked = lint(&["--cache"]);
+    assert_eq!(marked.replace("kept: ", ""), plain);
+    assert_eq!(marked.matches("\"kept: ").count(), plain.matches("\"message\"").count());
+    assert!(!lint(&["--cache", "--threshold", "2"]).contains("kept: "));
+    let other = folder.path().join("Other.mod");
+    let text = fs::read_to_string(&other).unwrap();
+    fs::write(&other, format!("! A comment\n{text}")).unwrap();
+    let half = lint(&["--cache"]);
+    assert_eq!(half.replace("kept: ", ""), lint(&[]));
+    assert!(
+        half.contains("kept: ")
+            && half.matches("kept: ").count() < marked.matches("kept: ").count()
+    );
+
+    // A damaged file is no error.
+    for path in reports() {
+        fs::write(path, "{").unwrap();
+    }
+    assert_eq!(lint(&["--cache"]), lint(&[]));
+    refused(&["lint", ".", "--cache=Cargo.toml/x"], "--cache=FOLDER");
+}
+
 /// A program with an absurd number does not use up the budget of the others.
 #[test]
 fn infinite_energies_are_left_out_of_the_total() {

@@ -5,13 +5,14 @@
 mod support;
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use joulepath::arm::dynamics::{Data, kinetic_energy, potential_energy, torque};
 use joulepath::arm::robot::{Model, find};
-use joulepath::retime::energy::account;
+use joulepath::retime::energy::{Energies, account};
 use joulepath::retime::motion::timed::TimedMotion;
 use joulepath::retime::motion::timeline::{Run, What};
-use joulepath::retime::motion::{Options, Simulation};
+use joulepath::retime::motion::{Options, Plans, Simulation};
 use joulepath::retime::path::PieceKind;
 use support::{irb1600, program};
 
@@ -637,4 +638,33 @@ fn arrays_larger_than_memory_are_not_allocated() {
     let simulation = simulated(body);
     let reported = reasons(&simulation);
     assert!(reported.iter().any(|reason| reason.contains("too large")), "{reported:?}");
+}
+
+#[test]
+fn known_runs_change_no_result() {
+    let body = "MoveAbsJ home,v1000,fine,tool0;\nMoveJ a,v1000,z10,tool0;\nMoveL b,v300,fine,tool0;\n\
+        WaitTime 0.5;\nMoveL c,v300,fine,tool0;";
+    let changed = body.replace("MoveL c,v300", "MoveL c,v800");
+    let model = irb1600();
+    let options = Options { plans: Some(Arc::new(Plans::new(&model))), ..Options::default() };
+    let energies = Energies::new(&model);
+    let states = |simulation: &Simulation| -> Vec<_> {
+        let of = |run: &Run| [0.1, 0.4, 0.9].map(|share| run.at(share * run.duration()).list());
+        runs(simulation).into_iter().map(of).collect()
+    };
+    for body in [body, &changed, body] {
+        let plain = simulated(body);
+        let known = run_with(&model, body, &options);
+        assert_eq!(plain.cycle_s, known.cycle_s);
+        assert_eq!(states(&plain), states(&known));
+        assert_eq!(account(&model, &plain).events, energies.account(&known).events);
+    }
+    // Half the joint speed is another robot.
+    let mut slow = model.clone();
+    for speed in slow.limits.velocity.iter_mut().flatten() {
+        *speed *= 0.5;
+    }
+    let plain = run_with(&slow, body, &Options::default());
+    assert_ne!(plain.cycle_s, simulated(body).cycle_s);
+    assert_eq!(plain.cycle_s, run_with(&slow, body, &options).cycle_s);
 }

@@ -3,6 +3,7 @@
 use joulepath::rapid::text::SourceFile;
 use joulepath::retime::motion::timeline::What;
 use joulepath::tool::lint::engine::cycles;
+use joulepath::tool::lint::known::Known;
 use joulepath::tool::lint::{Applicability, Fixed, fix};
 
 use crate::planted::planted_faults;
@@ -12,7 +13,7 @@ const UNNEEDED_STOP: &str = "EW101_unneeded_stop_point.mod";
 
 /// Energy (J), actions and end position (rad) of a cycle.
 fn cycle(fixture: &Fixture) -> (f64, Vec<String>, Option<[f64; 6]>) {
-    let cycles = cycles(&fixture.job());
+    let cycles = cycles(&fixture.job(), fixture.model.as_ref().map(Known::new).as_ref());
     let cycle = cycles[0].as_ref().unwrap();
     let mut done = Vec::new();
     let mut end = None;

@@ -3,6 +3,7 @@
 use joulepath::rapid::text::{Edit, FileId, Span, apply};
 use joulepath::tool::lint::engine::cycles;
 use joulepath::tool::lint::evaluate::difference;
+use joulepath::tool::lint::known::Known;
 use joulepath::tool::lint::{Applicability, Finding};
 
 use crate::planted::planted_faults;
@@ -16,7 +17,7 @@ const SECONDS: f64 = 1e-3;
 
 /// Energy (J) and time (s) of a cycle.
 fn cycle(fixture: &Fixture) -> (f64, f64) {
-    let cycles = cycles(&fixture.job());
+    let cycles = cycles(&fixture.job(), fixture.model.as_ref().map(Known::new).as_ref());
     let cycle = cycles[0].as_ref().unwrap();
     (cycle.account.total.energy_j(), cycle.simulation.cycle_s)
 }
@@ -180,7 +181,7 @@ fn leaving_out_a_movement_keeps_the_load_of_the_next_wait() {
         ENDPROC
     ENDMODULE";
     let fixture = Fixture::new("M.mod".into(), text);
-    let cycles = cycles(&fixture.job());
+    let cycles = cycles(&fixture.job(), fixture.model.as_ref().map(Known::new).as_ref());
     let start = text.rfind("MoveAbsJ jOut").unwrap();
     let length = text[start..].find(';').unwrap() + 1;
     let span = Span { file: FileId(0), start: start as u32, end: (start + length) as u32 };

@@ -1,13 +1,19 @@
 //! The energy of a simulation per movement and per wait.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use super::parts::EnergyParts;
 use super::power::{holding_w, motion_energy};
 use crate::arm::dynamics::Load;
 use crate::arm::robot::Model;
+use crate::retime::motion::memo::{Memo, key};
 use crate::retime::motion::timeline::{Event, Run, Simulation, What};
 use crate::retime::path::joint_path::Joints;
+
+/// Energies of runs that are kept at least.
+const KEPT: usize = 10_000;
 
 /// Energies of a simulation.
 #[derive(Clone, Debug)]
@@ -18,10 +24,50 @@ pub struct Account {
     pub events: Vec<Vec<EnergyParts>>,
 }
 
+/// The energies of the last runs of a robot.
+#[derive(Debug)]
+pub struct Energies {
+    model: Model,
+    kept: Memo<Arc<Vec<EnergyParts>>>,
+}
+
+impl Energies {
+    /// No energies.
+    #[must_use]
+    pub fn new(model: &Model) -> Energies {
+        Energies { model: model.clone(), kept: Memo::new(KEPT) }
+    }
+
+    /// Whether they are those of a robot.
+    pub fn is_of(&self, model: &Model) -> bool {
+        self.model == *model
+    }
+
+    /// The energy of every event with the robot. That of a run with a key is not computed again where it
+    /// is known.
+    pub fn account(&self, simulation: &Simulation) -> Account {
+        summed(&self.model, simulation, |run| match run.key {
+            Some(of) => {
+                let of = key(&(of, run.settling));
+                (*self.kept.get_or(of, || Arc::new(run_energy(&self.model, run)))).clone()
+            }
+            None => run_energy(&self.model, run),
+        })
+    }
+}
+
 /// The energy of every event.
 pub fn account(model: &Model, simulation: &Simulation) -> Account {
+    summed(model, simulation, |run| run_energy(model, run))
+}
+
+fn summed(
+    model: &Model,
+    simulation: &Simulation,
+    run_energy: impl Fn(&Run) -> Vec<EnergyParts> + Sync,
+) -> Account {
     let event = |event: &Event| match &event.what {
-        What::Run(run) => run_energy(model, run),
+        What::Run(run) => run_energy(run),
         What::Wait(wait) => vec![at_rest(model, &wait.load, &wait.q, event.duration)],
         What::Output(..) | What::Left(_) => vec![EnergyParts::default()],
     };

@@ -17,5 +17,5 @@ pub mod power;
 mod quadrature;
 pub mod trajectory;
 
-pub use account::{Account, account};
+pub use account::{Account, Energies, account};
 pub use parts::EnergyParts;

@@ -6,6 +6,7 @@ pub mod controller;
 pub mod joint_state;
 mod late;
 mod leg_times;
+pub mod memo;
 pub mod pace;
 pub mod planner;
 mod quintics;
@@ -18,5 +19,6 @@ pub mod timeline;
 pub mod timing;
 pub mod virtual_controller;
 
+pub use run_plan::Plans;
 pub use timeline::Simulation;
 pub use virtual_controller::{Options, Step, replay, simulate, unreached};

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::controller::{Planning, motion_limits};
 use super::late::within_limits;
+use super::memo::{Key, Memo, key};
 use super::pace::Pace;
 use super::planner::plan;
 use super::sampling::{Loaded, SpeedCap};
@@ -20,7 +21,11 @@ use crate::retime::path::{Leg, LegKind, build};
 /// lengthen it anyway.
 const SHORTEST: f64 = 1e-6;
 
+/// Planned runs that are kept at least: those of a long program, in some tens of megabytes.
+const KEPT: usize = 1_000;
+
 /// The motion of a run.
+#[derive(Clone)]
 pub(super) struct Planned {
     /// Motions with their start in the run, s.
     pub motions: Vec<(f64, TimedMotion)>,
@@ -30,28 +35,81 @@ pub(super) struct Planned {
     pub problem: Option<(usize, String)>,
     /// Time at rest before the next movement, s; the time of a timed movement includes it.
     pub settling_s: f64,
+    /// The key of the run, if planned runs are kept.
+    pub key: Option<Key>,
+}
+
+/// The last planned runs of a robot, for simulations of programs that differ little.
+#[derive(Debug)]
+pub struct Plans {
+    model: Model,
+    kept: Memo<Arc<Planned>>,
+}
+
+impl Plans {
+    /// No planned runs.
+    #[must_use]
+    pub fn new(model: &Model) -> Plans {
+        Plans { model: model.clone(), kept: Memo::new(KEPT) }
+    }
 }
 
 /// A run that is not yet planned.
 pub(super) struct RunDraft {
     pub(super) movements: Vec<Movement>,
+    pub(super) task: RunTask,
+}
+
+/// All that the motion of a run depends on, besides the robot.
+#[derive(Clone, Debug)]
+pub(super) struct RunTask {
     pub(super) legs: Vec<Leg>,
+    /// Programmed limits of the legs.
+    caps: Vec<SpeedCap>,
     /// `\T` of the movements under the overrides, s.
-    pub(super) times: Vec<Option<f64>>,
+    times: Vec<Option<f64>>,
+    /// Whether all movements are `MoveAbsJ`.
+    absolute: bool,
     pub(super) load: Load,
     /// Settings of the first movement.
-    pub(super) settings: Arc<Settings>,
+    settings: Arc<Settings>,
 }
 
 impl RunDraft {
-    /// Keeps the first `count` movements; the robot stops after them.
-    pub(super) fn truncate(&mut self, count: usize) {
-        self.movements.truncate(count);
-        self.legs.truncate(count);
-        self.times.truncate(count);
+    /// A run of at least one movement, with the legs and `\T` (s, under the overrides) of the movements.
+    pub(super) fn new(
+        movements: Vec<Movement>,
+        legs: Vec<Leg>,
+        times: Vec<Option<f64>>,
+        load: Load,
+    ) -> RunDraft {
+        let caps = legs.iter().zip(&movements).map(|(leg, movement)| cap(leg, movement)).collect();
+        let absolute = movements.iter().all(|movement| movement.form == MoveForm::AbsJ);
+        let settings = movements[0].settings.clone();
+        RunDraft { task: RunTask { legs, caps, times, absolute, load, settings }, movements }
     }
 
-    pub(super) fn plan(&self, model: &Model) -> Planned {
+    /// Keeps the first `count` movements; the robot stops after them.
+    pub(super) fn truncated(mut self, count: usize) -> RunDraft {
+        self.movements.truncate(count);
+        self.task.legs.truncate(count);
+        self.task.times.truncate(count);
+        RunDraft::new(self.movements, self.task.legs, self.task.times, self.task.load)
+    }
+}
+
+impl RunTask {
+    /// The motion with a robot. It is not computed again where it is known.
+    pub(super) fn plan(&self, model: &Model, known: Option<&Plans>) -> Planned {
+        let Some(known) = known.filter(|known| known.model == *model) else {
+            return self.motion(model);
+        };
+        let key = key(self);
+        let planned = known.kept.get_or(key, || Arc::new(self.motion(model)));
+        Planned { key: Some(key), ..(*planned).clone() }
+    }
+
+    fn motion(&self, model: &Model) -> Planned {
         let loaded = Loaded { model, load: &self.load };
         let planning = Planning::new(model, &self.settings);
         match self.as_stream() {
@@ -63,7 +121,7 @@ impl RunDraft {
     /// The stream of a run of timed `MoveAbsJ`, if all zones reach half the distance of their
     /// points.
     fn as_stream(&self) -> Option<Stream> {
-        if self.movements.iter().any(|movement| movement.form != MoveForm::AbsJ) {
+        if !self.absolute {
             return None;
         }
         let planned = |time: &Option<f64>| time.map(|time| time.max(SHORTEST));
@@ -80,12 +138,10 @@ impl RunDraft {
     }
 
     fn plan_paths(&self, loaded: Loaded<'_>, planning: Planning) -> Planned {
-        let RunDraft { movements, legs, times, .. } = self;
+        let RunTask { legs, caps, times, .. } = self;
         let model = loaded.model;
-        let caps: Vec<SpeedCap> =
-            legs.iter().zip(movements).map(|(leg, movement)| cap(leg, movement)).collect();
         // An early end needs a larger acceleration than the rest of the motion.
-        let planning = if tcp_limits::limited(&caps) { planning.complete() } else { planning };
+        let planning = if tcp_limits::limited(caps) { planning.complete() } else { planning };
         let limits = motion_limits(model);
         let mut pieces = vec![(0.0, Pace::None); legs.len()];
         let (paths, mut problem) = match build(model, legs) {
@@ -104,7 +160,7 @@ impl RunDraft {
         for path in paths {
             let path = Arc::new(path);
             let indices = path.legs();
-            let (motion, paces) = match plan(loaded, &path, &caps, &limits, &planning, times) {
+            let (motion, paces) = match plan(loaded, &path, caps, &limits, &planning, times) {
                 Ok(planned) => planned,
                 Err(error) => {
                     problem = Some((indices.start, error.to_string()));
@@ -134,7 +190,7 @@ impl RunDraft {
             }
         }
         let settling_s = settling_after(pieces[pieces.len() - 1].1, &planning);
-        Planned { motions, pieces, problem, settling_s }
+        Planned { motions, pieces, problem, settling_s, key: None }
     }
 }
 
@@ -156,7 +212,7 @@ fn realise(loaded: Loaded<'_>, stream: Stream, planning: Planning, acceleration:
     // The stream model has no settling of its own: use that of other movements.
     let settling_s = if count > 1 { planning.settling_s } else { settling_after(pace, &planning) };
     let motions = vec![(0.0, TimedMotion::Stream(stream))];
-    Planned { motions, pieces, problem: None, settling_s }
+    Planned { motions, pieces, problem: None, settling_s, key: None }
 }
 
 fn settling_after(pace: Pace, planning: &Planning) -> f64 {

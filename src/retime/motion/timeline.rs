@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use super::memo::Key;
 use super::pace::Pace;
 use super::timed::{JointState, TimedMotion};
 use crate::arm::dynamics::Load;
@@ -79,6 +80,8 @@ pub struct Run {
     pub start_known: bool,
     /// Reason why the path could not be followed as programmed.
     pub problem: Option<String>,
+    /// What its motion was found by, if planned runs are kept.
+    pub key: Option<Key>,
 }
 
 impl Run {

@@ -1,5 +1,7 @@
 //! `joulepath lint`: wasted energy in RAPID programs.
 
+mod cache;
+
 use std::fs;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -10,6 +12,7 @@ use clap::{Args, ValueEnum};
 use serde::Serialize;
 use similar::TextDiff;
 
+use self::cache::Cache;
 use super::backup::{self, is_shared};
 use super::common::{self, CellArgs, note};
 use super::input::{self, Input};
@@ -90,6 +93,16 @@ pub(super) struct LintArgs {
     #[arg(long, value_name = "500J|3%", allow_hyphen_values = true)]
     pub(super) max_waste: Option<String>,
 
+    /// Keep the findings in a folder, and lint only changed programs. The folder can be deleted at any time.
+    #[arg(
+        long,
+        value_name = "FOLDER",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = ".joulepath_cache"
+    )]
+    pub(super) cache: Option<PathBuf>,
+
     /// A file of known findings, which are not reported.
     #[arg(long, value_name = "FILE")]
     pub(super) baseline: Option<PathBuf>,
@@ -135,7 +148,7 @@ pub(super) fn run(args: &LintArgs) -> anyhow::Result<ExitCode> {
         }
         report
     } else {
-        lint::lint(&setup.programs.job())
+        lint_again(args, &setup.programs)?
     };
     note_syntax_errors(args, &setup.programs.files, &report);
     if let Some(path) = &args.write_baseline {
@@ -148,6 +161,15 @@ pub(super) fn run(args: &LintArgs) -> anyhow::Result<ExitCode> {
     }
     write(args, &setup, &report)?;
     over_limit(&setup, &report)
+}
+
+/// The report of all programs, with a cache only of the changed ones.
+fn lint_again(args: &LintArgs, programs: &Programs) -> anyhow::Result<Report> {
+    let job = programs.job();
+    Ok(match &args.cache {
+        Some(folder) => lint::lint_changed(&job, &Cache::open(folder)?),
+        None => lint::lint(&job),
+    })
 }
 
 /// What cannot be read is not linted: the first error of each file is shown.

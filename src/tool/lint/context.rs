@@ -328,7 +328,7 @@ impl<'c> Context<'c> {
     }
 
     /// The effect of a change of movements or waits on the cycle, if it can be simulated.
-    pub fn difference(&self, spans: &[Span], change: &Change<'_>) -> Option<Difference> {
+    pub fn difference(&self, spans: &[Span], change: &Change<'_>) -> Option<Difference<'_>> {
         difference(self.model?, self.cycle?, spans, change)
     }
 

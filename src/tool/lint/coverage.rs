@@ -2,6 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use serde::{Deserialize, Serialize};
+
 use super::context::Context;
 use super::trace::Action;
 use crate::rapid::text::Span;
@@ -10,7 +12,7 @@ use crate::rapid::text::Span;
 const MAX_NAMES: usize = 3;
 
 /// The simulated movements among all.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Coverage {
     /// Movement statements that the program can reach.
     pub movements: usize,

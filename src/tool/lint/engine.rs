@@ -10,6 +10,7 @@ use super::coverage::Coverage;
 use super::evaluate::Cycle;
 use super::group::Group;
 use super::job::Job;
+use super::known::Known;
 use super::offer::offer_fixes;
 use super::parsed::{ParsedFile, program, programs, read};
 use super::ranking::severity;
@@ -17,6 +18,7 @@ use super::register::ALL;
 use super::rule::{CycleFigures, Finding};
 use super::rules::unused_suppression;
 use super::runs;
+use super::stored::{Reports, Store};
 use crate::arm::robot::Model;
 use crate::rapid::syntax::SyntaxError;
 use crate::rapid::text::Span;
@@ -67,9 +69,26 @@ pub struct Examined {
 /// Lints all programs.
 #[must_use]
 pub fn lint(job: &Job<'_>) -> Report {
+    lint_programs(job, None)
+}
+
+/// Lints the programs that have changed since their reports were kept in a store.
+#[must_use]
+pub fn lint_changed(job: &Job<'_>, store: &dyn Store) -> Report {
+    lint_programs(job, Some(&Reports::new(job, store)))
+}
+
+fn lint_programs(job: &Job<'_>, reports: Option<&Reports<'_>>) -> Report {
     let read = read(job);
     // Cycles are not kept: those of all programs of a plant would fill the memory.
-    let report = |group: &Group| lint_group(job, group, &read).0;
+    let known = job.model.map(Known::new);
+    let report = |group: &Group| {
+        let lint = || lint_group(job, known.as_ref(), group, &read).0;
+        match reports {
+            Some(reports) => reports.report(group, lint),
+            None => lint(),
+        }
+    };
     let mut report = merged(programs(job, &read).par_iter().map(report).collect());
     let modules: BTreeSet<usize> =
         job.groups.iter().flat_map(|group| group.files.iter().copied()).collect();
@@ -78,25 +97,33 @@ pub fn lint(job: &Job<'_>) -> Report {
     report
 }
 
-/// Lints all programs; also returns their cycles.
+/// Lints all programs; also returns their cycles. `known` belongs to the robot of the job.
 #[must_use]
-pub fn examine(job: &Job<'_>) -> Examined {
+pub fn examine(job: &Job<'_>, known: Option<&Known>) -> Examined {
     let read = read(job);
     let groups = programs(job, &read);
-    examine_programs(job, &groups, &read)
+    examine_programs(job, known, &groups, &read)
 }
 
-/// Lints the programs that contain a file; only changed files are parsed again.
+/// Lints the programs that contain a file; only changed files are parsed again, and only changed movements
+/// are simulated again.
 #[must_use]
 pub fn examine_file(job: &Job<'_>, file: usize, kept: &mut ReadCache) -> Examined {
     let read = kept.read(job);
     let mut groups = programs(job, &read);
     groups.retain(|group| group.files.contains(&file));
-    examine_programs(job, &groups, &read)
+    let known = kept.known(job.model);
+    examine_programs(job, known.as_ref(), &groups, &read)
 }
 
-fn examine_programs(job: &Job<'_>, groups: &[Group], read: &[Arc<ParsedFile>]) -> Examined {
-    let (reports, cycles) = groups.par_iter().map(|group| lint_group(job, group, read)).unzip();
+fn examine_programs(
+    job: &Job<'_>,
+    known: Option<&Known>,
+    groups: &[Group],
+    read: &[Arc<ParsedFile>],
+) -> Examined {
+    let (reports, cycles) =
+        groups.par_iter().map(|group| lint_group(job, known, group, read)).unzip();
     let programs = groups.iter().map(|group| group.files.clone()).collect();
     Examined { report: merged(reports), cycles, programs }
 }
@@ -118,19 +145,24 @@ fn merged(reports: Vec<Report>) -> Report {
 
 /// The simulated cycle of each program, in program order; `None` without a robot or an entry.
 #[must_use]
-pub fn cycles(job: &Job<'_>) -> Vec<Option<Cycle>> {
+pub fn cycles(job: &Job<'_>, known: Option<&Known>) -> Vec<Option<Cycle>> {
     let read = read(job);
     let cycle = |group: &Group| {
         let program = program(group, &read);
-        runs::cycle(job, &program, program.entry(&group.entry))
+        runs::cycle(job, known, &program, program.entry(&group.entry))
     };
     programs(job, &read).par_iter().map(cycle).collect()
 }
 
-fn lint_group(job: &Job<'_>, group: &Group, read: &[Arc<ParsedFile>]) -> (Report, Option<Cycle>) {
+fn lint_group(
+    job: &Job<'_>,
+    known: Option<&Known>,
+    group: &Group,
+    read: &[Arc<ParsedFile>],
+) -> (Report, Option<Cycle>) {
     let program = program(group, read);
     let entry = program.entry(&group.entry);
-    let cycle = runs::cycle(job, &program, entry);
+    let cycle = runs::cycle(job, known, &program, entry);
     let recording = cycle.is_none().then(|| runs::recording(&program, entry));
     let context =
         Context::new(job.files, job.model, &program, group, cycle.as_ref(), recording.as_ref());
@@ -158,7 +190,7 @@ fn lint_group(job: &Job<'_>, group: &Group, read: &[Arc<ParsedFile>]) -> (Report
     let unresolved = context.unresolved.len();
     let time = cycle.as_ref().map(|cycle| cycle.simulation.cycle_s);
     let figures = energy.zip(time).map(|(energy_j, time_s)| CycleFigures { energy_j, time_s });
-    offer_fixes(job, group, read, cycle.as_ref(), &mut findings);
+    offer_fixes(job, known, group, read, cycle.as_ref(), &mut findings);
     for finding in &mut findings {
         finding.cycle = figures;
         finding.severity = severity(finding);

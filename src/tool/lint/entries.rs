@@ -6,44 +6,61 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::flow::Flow;
 use super::statements::called_instruction;
 use crate::rapid::builtins::Instruction;
-use crate::rapid::ir::hir::RoutineKind;
+use crate::rapid::ir::hir::{Routine, RoutineKind};
 use crate::rapid::ir::program::{Program, RoutineId};
 use crate::rapid::text::Span;
 
-/// The procedures with movements that nothing executed so far calls, and no other of them, without those
-/// that were tried. Where the
-/// entry is missing or moves nothing, each procedure may be one, otherwise those that the entry may
-/// call: a menu calls the one that is chosen.
-pub(super) fn further_entries(
-    program: &Program,
-    entry: Option<RoutineId>,
-    executed: &BTreeSet<Span>,
-    tried: &BTreeSet<RoutineId>,
-) -> Vec<RoutineId> {
-    let flow = Flow::new(program, entry);
-    let all = || program.routines().map(|(id, _)| id).collect();
-    let entry = entry.filter(|_| !executed.is_empty() && !flow.has_late_calls());
-    let pool: BTreeSet<RoutineId> = entry.map_or_else(all, |entry| flow.running([entry]));
-    let moves = movements(&flow);
-    let is_new = |(id, reached): &(RoutineId, BTreeSet<RoutineId>)| {
-        let routine = program.routine(*id);
-        let mut own = moves.iter().filter(|(of, _)| reached.contains(of)).peekable();
-        !tried.contains(id)
-            && matches!(routine.kind, RoutineKind::Proc)
-            && routine.params.iter().all(|param| param.optional)
-            && own.peek().is_some()
-            && own.all(|(_, span)| !executed.contains(span))
-    };
-    let reach = pool.into_iter().map(|id| (id, flow.running([id])));
-    let new: BTreeMap<RoutineId, BTreeSet<RoutineId>> = reach.filter(is_new).collect();
-    // Procedures that call each other are roots, too.
-    let is_root = |id: &RoutineId| {
-        let calls = |(other, reached): (&RoutineId, &BTreeSet<RoutineId>)| {
-            reached.contains(id) && !new[id].contains(other)
+/// The procedures that can start a program.
+pub(super) struct Entries {
+    /// The procedures that the entry may call; `None` where that is not known.
+    called: Option<BTreeSet<RoutineId>>,
+    /// The procedures without required parameters, with the routines and the movements that they reach.
+    starts: BTreeMap<RoutineId, (BTreeSet<RoutineId>, BTreeSet<Span>)>,
+}
+
+impl Entries {
+    /// The procedures of a program with an entry, if known.
+    pub(super) fn new(program: &Program, entry: Option<RoutineId>) -> Entries {
+        let flow = Flow::new(program, entry);
+        let moves = movements(&flow);
+        let starts = program.routines().filter(|(_, routine)| can_start(routine)).map(|(id, _)| {
+            let reached = flow.running([id]);
+            let own = moves.iter().filter(|(of, _)| reached.contains(of));
+            let own = own.map(|(_, span)| *span).collect();
+            (id, (reached, own))
+        });
+        let called = entry.filter(|_| !flow.has_late_calls()).map(|entry| flow.running([entry]));
+        Entries { called, starts: starts.collect() }
+    }
+
+    /// The procedures with movements that nothing executed so far calls, and no other of them, without
+    /// those that were tried. Where the entry is missing or moves nothing, each procedure may be one,
+    /// otherwise those that the entry may call: a menu calls the one that is chosen.
+    pub(super) fn further(
+        &self,
+        executed: &BTreeSet<Span>,
+        tried: &BTreeSet<RoutineId>,
+    ) -> Vec<RoutineId> {
+        let called = self.called.as_ref().filter(|_| !executed.is_empty());
+        let is_new = |(id, (_, moves)): &(&RoutineId, &(BTreeSet<RoutineId>, BTreeSet<Span>))| {
+            called.is_none_or(|called| called.contains(id))
+                && !tried.contains(id)
+                && !moves.is_empty()
+                && moves.is_disjoint(executed)
         };
-        !new.iter().any(calls)
-    };
-    new.keys().copied().filter(is_root).collect()
+        let new: BTreeMap<&RoutineId, &BTreeSet<RoutineId>> =
+            self.starts.iter().filter(is_new).map(|(id, (reached, _))| (id, reached)).collect();
+        // Procedures that call each other are roots, too.
+        let is_root = |id: &&RoutineId| {
+            !new.iter().any(|(other, reached)| reached.contains(id) && !new[id].contains(other))
+        };
+        new.keys().copied().filter(is_root).copied().collect()
+    }
+}
+
+/// Whether a routine can be called without arguments.
+fn can_start(routine: &Routine) -> bool {
+    matches!(routine.kind, RoutineKind::Proc) && routine.params.iter().all(|param| param.optional)
 }
 
 /// The movement statements that their routines reach.

@@ -4,6 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 
+use super::known::Known;
 use super::saving::{Evaluation, SavesNothing, Saving};
 use super::trace::{self, Action, TraceStep, run};
 use crate::arm::dynamics::Load;
@@ -12,8 +13,8 @@ use crate::rapid::ir::movement::Wait;
 use crate::rapid::text::Span;
 use crate::retime::energy::account::at_rest;
 use crate::retime::energy::moments::Moments;
-use crate::retime::energy::plausible::{Interval, Robots};
-use crate::retime::energy::{Account, EnergyParts, account};
+use crate::retime::energy::plausible::Interval;
+use crate::retime::energy::{Account, EnergyParts};
 use crate::retime::motion::timeline::{Event, Run, Simulation, WaitBasis, What};
 use crate::retime::motion::{Options, Step, replay};
 use crate::retime::path::joint_path::{Joints, are_close};
@@ -31,10 +32,10 @@ pub struct Cycle {
     pub simulation: Simulation,
     /// Its energy.
     pub account: Account,
-    /// The plausible robots.
-    robots: Option<Robots>,
     /// Options of the simulation.
     pub options: Options,
+    /// The runs of this simulation and of earlier ones.
+    known: Known,
     /// The events of each statement, in order.
     events: BTreeMap<Span, Vec<usize>>,
     /// Whether the program continues during a movement (`\Conc`).
@@ -43,7 +44,12 @@ pub struct Cycle {
 
 impl Cycle {
     /// A cycle from its simulation and energy.
-    pub fn new(model: &Model, simulation: Simulation, account: Account, options: Options) -> Cycle {
+    pub fn new(
+        simulation: Simulation,
+        account: Account,
+        options: &Options,
+        known: &Known,
+    ) -> Cycle {
         let mut events: BTreeMap<Span, Vec<usize>> = BTreeMap::new();
         let mut concurrent = false;
         for step in trace::of_events(&simulation.events) {
@@ -53,8 +59,9 @@ impl Cycle {
             }
             concurrent |= step.what.movement().is_some_and(|movement| movement.concurrent);
         }
-        let robots = Robots::new(model);
-        Cycle { simulation, account, robots, options, events, concurrent }
+        let options = known.options(options);
+        let known = known.clone();
+        Cycle { simulation, account, options, known, events, concurrent }
     }
 
     /// The events of some statements, in order.
@@ -69,32 +76,61 @@ impl Cycle {
 pub type Change<'f> = dyn Fn(&Step) -> Vec<Step> + Sync + 'f;
 
 /// The effect of a change on the cycle.
-#[derive(Clone, Debug)]
-pub struct Difference {
+pub struct Difference<'c> {
+    model: &'c Model,
+    cycle: &'c Cycle,
+    parts: Vec<Replayed>,
+    rests: Vec<Rest>,
     /// Saved energy.
     pub saved: EnergyParts,
-    /// Saved energy for each plausible robot \[J\]; empty without uncertainty.
-    pub plausible_j: Vec<f64>,
     /// Saved time, s.
     pub time_s: f64,
     /// Increase of the cycle time if no wait absorbed it, s.
     pub longer_s: f64,
 }
 
-impl Difference {
-    /// Its saving; an error if the interval of the saving includes zero.
+impl Difference<'_> {
+    /// Its saving; an error if the interval of the saving over the plausible robots includes zero. The
+    /// interval takes more time than the difference.
     pub fn saving(&self) -> Result<Saving, SavesNothing> {
         let energy_j = self.saved.energy_j();
-        let (low_j, high_j) = if self.plausible_j.is_empty() {
-            (energy_j, energy_j)
-        } else {
-            let Interval { low, high, .. } = Interval::from_values(&self.plausible_j);
-            (low, high)
+        if energy_j <= 0.0 {
+            return Err(SavesNothing);
+        }
+        let (low_j, high_j) = match self.cycle.known.robots() {
+            Some(robots) => {
+                let changes = robots.changes(self.model, &self.saved_moments());
+                let plausible: Vec<f64> =
+                    changes.iter().map(|change| energy_j + change.energy_j()).collect();
+                let Interval { low, high, .. } = Interval::from_values(&plausible);
+                (low, high)
+            }
+            None => (energy_j, energy_j),
         };
         if low_j <= 0.0 {
             return Err(SavesNothing);
         }
         Ok(Saving { energy_j, low_j, high_j, time_s: self.time_s })
+    }
+
+    /// Energy moments of the saving, summed over the replayed parts.
+    fn saved_moments(&self) -> Moments {
+        let model = self.model;
+        let mut sums = Moments::none(model);
+        for Replayed { range, after, .. } in &self.parts {
+            for event in &self.cycle.simulation.events[range.clone()] {
+                sums.add(&Moments::from_event(model, event), 1.0);
+            }
+            for event in &after.events {
+                sums.add(&Moments::from_event(model, event), -1.0);
+            }
+        }
+        for rest in &self.rests {
+            let mut of = Moments::none(model);
+            of.rest(model, &rest.load, &rest.q, rest.longer_s.abs());
+            sums.add(&of, -rest.longer_s.signum());
+        }
+        sums
     }
 }
 
@@ -105,12 +141,12 @@ pub fn evaluate(model: &Model, cycle: &Cycle, spans: &[Span], change: &Change<'_
 
 /// The effect of a change of every execution of the statements at `spans`; `None` if it cannot be
 /// simulated.
-pub fn difference(
-    model: &Model,
-    cycle: &Cycle,
+pub fn difference<'c>(
+    model: &'c Model,
+    cycle: &'c Cycle,
     spans: &[Span],
     change: &Change<'_>,
-) -> Option<Difference> {
+) -> Option<Difference<'c>> {
     if !model.has_dynamics() {
         return None;
     }
@@ -123,41 +159,13 @@ pub fn difference(
         for part in cycle.account.events[range.clone()].iter().flatten() {
             saved += *part;
         }
-        saved += account(model, after).total * -1.0;
+        saved += cycle.known.account(after).total * -1.0;
     }
     for rest in &rests {
         let lasts = rest.longer_s.abs();
         saved += at_rest(model, &rest.load, &rest.q, lasts) * -rest.longer_s.signum();
     }
-    let plausible_j = match &cycle.robots {
-        // A change that costs energy with the nominal robot is not reported anyway.
-        Some(robots) if saved.energy_j() > 0.0 => {
-            let saved_moments = saved_moments(model, cycle, &parts, &rests);
-            let changes = robots.changes(model, &saved_moments);
-            changes.iter().map(|change| saved.energy_j() + change.energy_j()).collect()
-        }
-        _ => Vec::new(),
-    };
-    Some(Difference { saved, plausible_j, time_s, longer_s: -alone_s })
-}
-
-/// Energy moments of the saving, summed over the replayed parts.
-fn saved_moments(model: &Model, cycle: &Cycle, parts: &[Replayed], rests: &[Rest]) -> Moments {
-    let mut sums = Moments::none(model);
-    for Replayed { range, after, .. } in parts {
-        for event in &cycle.simulation.events[range.clone()] {
-            sums.add(&Moments::from_event(model, event), 1.0);
-        }
-        for event in &after.events {
-            sums.add(&Moments::from_event(model, event), -1.0);
-        }
-    }
-    for rest in rests {
-        let mut of = Moments::none(model);
-        of.rest(model, &rest.load, &rest.q, rest.longer_s.abs());
-        sums.add(&of, -rest.longer_s.signum());
-    }
-    sums
+    Some(Difference { model, cycle, parts, rests, saved, time_s, longer_s: -alone_s })
 }
 
 /// A range of events, and its simulation after a change.

@@ -3,6 +3,7 @@
 use super::engine::{Examined, Report, cycles, examine, lint};
 use super::evaluate::Cycle;
 use super::job::Job;
+use super::known::Known;
 use super::offer::{Places, ROUNDING};
 use super::process::{Kept, same_order, same_process};
 use super::rule::{Applicability, Family, Finding};
@@ -31,19 +32,21 @@ pub struct Fixed {
 pub fn fix(job: &Job<'_>, most: Applicability) -> Fixed {
     let mut files = job.files.to_vec();
     let (mut applied, mut withdrawn) = (0, 0);
+    let known = job.model.map(Known::new);
+    let known = known.as_ref();
     for _ in 0..MAX_ROUNDS {
         let now = with_files(job, &files);
-        let Examined { report, cycles: mut before, .. } = examine(&now);
+        let Examined { report, cycles: mut before, .. } = examine(&now, known);
         let chosen = candidates(&report, most);
         // All at once if they are compatible, otherwise one by one.
         let mut kept: Vec<&Finding> = Vec::new();
-        let mut result = attempt(job, &files, &before, &chosen).map(|(after, _)| after);
+        let mut result = attempt(job, known, &files, &before, &chosen).map(|(after, _)| after);
         if result.is_some() {
             kept.clone_from(&chosen);
         } else {
             for finding in &chosen {
                 kept.push(finding);
-                match attempt(job, &files, &before, &kept) {
+                match attempt(job, known, &files, &before, &kept) {
                     Some((after, cycles)) => {
                         before = cycles;
                         result = Some(after);
@@ -86,6 +89,7 @@ fn candidates(report: &Report, most: Applicability) -> Vec<&Finding> {
 /// The fixed files and their cycles, if these take less energy for the same process.
 fn attempt(
     job: &Job<'_>,
+    known: Option<&Known>,
     files: &[SourceFile],
     before: &[Option<Cycle>],
     findings: &[&Finding],
@@ -110,7 +114,7 @@ fn attempt(
         }
     }
     let comments = findings.iter().all(|finding| finding.rule.family == Family::Comments);
-    let after = cycles(&with_files(job, &changed));
+    let after = cycles(&with_files(job, &changed), known);
     let mut better = comments;
     for (before, after) in before.iter().zip(&after) {
         match (before, after) {

@@ -75,6 +75,8 @@ pub struct Flow<'p> {
     entry: Option<RoutineId>,
     graphs: BTreeMap<RoutineId, (Graph<'p>, Vec<bool>)>,
     callers: BTreeMap<RoutineId, Vec<Place>>,
+    /// The routines that a routine calls or connects to an interrupt.
+    callees: BTreeMap<RoutineId, BTreeSet<RoutineId>>,
     /// Whether some call has a computed name.
     late: bool,
     /// The names that denote data.
@@ -94,18 +96,26 @@ impl<'p> Flow<'p> {
             entry,
             graphs: graphs.collect(),
             callers: BTreeMap::new(),
+            callees: BTreeMap::new(),
             late: false,
             data_names: DataNames::new(program),
         };
         let mut callers: BTreeMap<RoutineId, Vec<Place>> = BTreeMap::new();
+        let mut callees: BTreeMap<RoutineId, BTreeSet<RoutineId>> = BTreeMap::new();
         let mut late = false;
         for (place, stmt, _) in flow.statements() {
             late |= matches!(stmt.kind, StmtKind::Call(Call { callee: Callee::Late(_), .. }));
             if let Class::Call(callee) = flow.class(place.0, stmt) {
                 callers.entry(callee).or_default().push(place);
+                callees.entry(place.0).or_default().insert(callee);
+            }
+            if let StmtKind::Connect { trap, .. } = &stmt.kind
+                && let Some(Symbol::Routine(trap)) = program.resolve(place.0.module, &trap.key)
+            {
+                callees.entry(place.0).or_default().insert(trap);
             }
         }
-        Flow { callers, late, ..flow }
+        Flow { callers, callees, late, ..flow }
     }
 
     /// The graph of a routine.
@@ -272,18 +282,8 @@ impl<'p> Flow<'p> {
         let mut found = BTreeSet::new();
         let mut open: Vec<RoutineId> = from.into_iter().collect();
         while let Some(id) = open.pop() {
-            if !found.insert(id) {
-                continue;
-            }
-            for stmt in self.statements_of(id) {
-                if let Class::Call(callee) = self.class(id, stmt) {
-                    open.push(callee);
-                }
-                if let StmtKind::Connect { trap, .. } = &stmt.kind
-                    && let Some(Symbol::Routine(trap)) = self.program.resolve(id.module, &trap.key)
-                {
-                    open.push(trap);
-                }
+            if found.insert(id) {
+                open.extend(self.callees.get(&id).into_iter().flatten());
             }
         }
         found

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::evaluate::Cycle;
 use super::group::Group;
 use super::job::Job;
+use super::known::Known;
 use super::parsed::{ParsedFile, program};
 use super::process::{Kept, same_order, same_process};
 use super::rule::{Family, Finding};
@@ -18,6 +19,7 @@ pub(super) const ROUNDING: f64 = 1e-6;
 /// not the same targets, waits and outputs in the same order. Fixes of comments need no simulation.
 pub(super) fn offer_fixes(
     job: &Job<'_>,
+    known: Option<&Known>,
     group: &Group,
     read: &[Arc<ParsedFile>],
     cycle: Option<&Cycle>,
@@ -40,7 +42,7 @@ pub(super) fn offer_fixes(
         let holds = |of: &[usize]| {
             let fixes = of.iter().filter_map(|index| findings[*index].fix.as_ref());
             let edits: Vec<Edit> = fixes.flat_map(|fix| fix.edits.iter().cloned()).collect();
-            keeps_work(job, group, read, before, &edits)
+            keeps_work(job, known, group, read, before, &edits)
         };
         for index in failing(&together, &holds) {
             findings[index].fix = None;
@@ -50,7 +52,7 @@ pub(super) fn offer_fixes(
 
 /// Those of some fixes that do not hold. Most do, so that they are tried together, and by halves where
 /// that fails.
-fn failing(of: &[usize], holds: &impl Fn(&[usize]) -> bool) -> Vec<usize> {
+fn failing(of: &[usize], holds: &(impl Fn(&[usize]) -> bool + Sync)) -> Vec<usize> {
     if holds(of) {
         return Vec::new();
     }
@@ -58,7 +60,8 @@ fn failing(of: &[usize], holds: &impl Fn(&[usize]) -> bool) -> Vec<usize> {
         return of.to_vec();
     }
     let (left, right) = of.split_at(of.len() / 2);
-    [failing(left, holds), failing(right, holds)].concat()
+    let (left, right) = rayon::join(|| failing(left, holds), || failing(right, holds));
+    [left, right].concat()
 }
 
 /// The first findings whose fixes change no text of each other.
@@ -90,6 +93,7 @@ impl Places {
 /// Whether the program with some edits takes no more energy for the same work in the same order.
 fn keeps_work(
     job: &Job<'_>,
+    known: Option<&Known>,
     group: &Group,
     read: &[Arc<ParsedFile>],
     before: &Cycle,
@@ -111,7 +115,7 @@ fn keeps_work(
         read[*index] = Arc::new(parsed);
     }
     let program = program(group, &read);
-    let after = runs::cycle(job, &program, program.entry(&group.entry));
+    let after = runs::cycle(job, known, &program, program.entry(&group.entry));
     job.model.zip(after).is_some_and(|(model, after)| {
         after.account.total.energy_j() <= before.account.total.energy_j() + ROUNDING
             && same_order(&before.simulation, &after.simulation)

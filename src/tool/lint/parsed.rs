@@ -7,7 +7,9 @@ use rayon::prelude::*;
 
 use super::group::Group;
 use super::job::Job;
+use super::known::Known;
 use super::suppress::{Suppression, suppressions};
+use crate::arm::robot::Model;
 use crate::rapid::ir::hir::Module;
 use crate::rapid::ir::lower;
 use crate::rapid::ir::program::Program;
@@ -30,13 +32,24 @@ impl ParsedFile {
     }
 }
 
-/// The parsed files of the last run; unchanged files are not parsed again.
+/// The parsed files and the simulated movements of the last runs: what did not change is neither parsed nor
+/// simulated again.
 #[derive(Default)]
 pub struct ReadCache {
     files: Vec<(Vec<u8>, Arc<ParsedFile>)>,
+    known: Option<Known>,
 }
 
 impl ReadCache {
+    /// What is known of simulations with a robot.
+    pub(super) fn known(&mut self, model: Option<&Model>) -> Option<Known> {
+        self.known = match (self.known.take(), model) {
+            (Some(known), Some(model)) if known.is_of(model) => Some(known),
+            (_, model) => model.map(Known::new),
+        };
+        self.known.clone()
+    }
+
     /// The parsed files of a job; they are kept for the next one.
     pub(super) fn read(&mut self, job: &Job<'_>) -> Vec<Arc<ParsedFile>> {
         let one = |(index, file): (usize, &SourceFile)| match self.files.get(index) {

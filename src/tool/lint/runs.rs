@@ -2,30 +2,38 @@
 
 use std::collections::BTreeSet;
 
-use super::entries::further_entries;
+use super::entries::Entries;
 use super::evaluate::Cycle;
 use super::job::Job;
+use super::known::Known;
 use super::trace::{self, Recording, TraceStep, record};
 use crate::rapid::ir::movement::Unresolved;
 use crate::rapid::ir::program::{Program, RoutineId};
 use crate::rapid::text::Span;
-use crate::retime::energy::account;
 use crate::retime::motion::timeline::{Event, What};
 use crate::retime::motion::{Simulation, simulate};
 
-/// The cycle of a program; `None` without a robot, or without anything that starts.
-pub(super) fn cycle(job: &Job<'_>, program: &Program, entry: Option<RoutineId>) -> Option<Cycle> {
-    let model = job.model?;
-    let run = |entry| simulate(program, entry, model, &job.options);
+/// The cycle of a program; `None` without a robot, or without anything that starts. `known` belongs to
+/// the robot.
+pub(super) fn cycle(
+    job: &Job<'_>,
+    known: Option<&Known>,
+    program: &Program,
+    entry: Option<RoutineId>,
+) -> Option<Cycle> {
+    let (model, known) = job.model.zip(known)?;
+    let options = known.options(&job.options);
+    let run = |entry| simulate(program, entry, model, &options);
+    let entries = Entries::new(program, entry);
     let mut simulation = entry.map(run);
     let mut tried: BTreeSet<RoutineId> = entry.into_iter().collect();
     loop {
         let steps = simulation.iter().flat_map(|it| trace::of_events(&it.events));
-        let entries = further_entries(program, entry, &movements(steps), &tried);
-        if entries.is_empty() {
+        let further = entries.further(&movements(steps), &tried);
+        if further.is_empty() {
             break;
         }
-        for entry in entries {
+        for entry in further {
             tried.insert(entry);
             simulation = Some(match simulation {
                 Some(before) => joined(before, program.routine(entry).span, run(entry)),
@@ -34,21 +42,21 @@ pub(super) fn cycle(job: &Job<'_>, program: &Program, entry: Option<RoutineId>) 
         }
     }
     let simulation = simulation?;
-    let account = account(model, &simulation);
-    Some(Cycle::new(model, simulation, account, job.options.clone()))
+    let account = known.account(&simulation);
+    Some(Cycle::new(simulation, account, &job.options, known))
 }
 
 /// The actions of a program without a robot.
 pub(super) fn recording(program: &Program, entry: Option<RoutineId>) -> Recording {
+    let entries = Entries::new(program, entry);
     let mut all = entry.map(|entry| record(program, entry)).unwrap_or_default();
     let mut tried: BTreeSet<RoutineId> = entry.into_iter().collect();
     loop {
-        let executed = movements(all.trace());
-        let entries = further_entries(program, entry, &executed, &tried);
-        if entries.is_empty() {
+        let further = entries.further(&movements(all.trace()), &tried);
+        if further.is_empty() {
             return all;
         }
-        for entry in entries {
+        for entry in further {
             tried.insert(entry);
             all.append(program.routine(entry).span, record(program, entry));
         }

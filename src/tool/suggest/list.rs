@@ -15,6 +15,7 @@ use crate::retime::energy::plausible::{Interval, Robots};
 use crate::retime::motion::Simulation;
 use crate::tool::lint::context::Context;
 use crate::tool::lint::evaluate::Cycle;
+use crate::tool::lint::known::Known;
 use crate::tool::lint::process::Kept;
 use crate::tool::lint::{Group, Job, Settings, lint};
 use crate::tool::retrofit::{Cell, RetrofitError, Simulated, Source, read_program};
@@ -80,6 +81,9 @@ pub fn suggestions(
     point_estimate: bool,
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Suggestions, RetrofitError> {
+    let known = Known::new(cell.model);
+    let options = known.options(cell.options);
+    let cell = Cell { options: &options, ..cell };
     let (program, _) = read_program(cell.files, cell.entry)?;
     let files: Vec<SourceFile> = cell.files.iter().map(|source| source.file.clone()).collect();
     let group =
@@ -93,7 +97,7 @@ pub fn suggestions(
         settings: &settings,
     });
     let Simulated { simulation, account } = cell.simulated()?;
-    let cycle = Cycle::new(cell.model, simulation, account, cell.options.clone());
+    let cycle = Cycle::new(simulation, account, cell.options, &known);
     let context = Context::new(&files, Some(cell.model), &program, &group, Some(&cycle), None);
     let (levers, notes) = levers(&context, &found.findings);
     let swept = Swept::new(cell.model, &cycle.simulation);

@@ -8,7 +8,7 @@ use super::state::VirtualController;
 use crate::rapid::ir::exec::WaitResult;
 use crate::rapid::ir::movement::{Movement, Stop, Wait};
 use crate::retime::motion::arrivals::{Anchor, Arrival, anchored, next_wait};
-use crate::retime::motion::run_plan::{Planned, RunDraft};
+use crate::retime::motion::run_plan::{Planned, RunDraft, RunTask};
 use crate::retime::motion::timeline::{Event, MoveRecord, Run, WaitBasis, WaitRecord, What};
 
 /// Drafts that are planned together: enough for all processors, few enough that an endless program
@@ -25,11 +25,10 @@ impl VirtualController<'_> {
         let pending = std::mem::take(&mut self.pending);
         self.pending_s = 0.0;
         let Some(first) = pending.first() else { return };
-        let settings = first.movement.settings.clone();
         let load = effective_load(&first.movement);
         let times = pending.iter().map(|p| self.timed(&p.movement)).collect();
         let (movements, legs) = pending.into_iter().map(|p| (p.movement, p.leg)).unzip();
-        self.keep(Draft::Run(Box::new(RunDraft { movements, legs, times, load, settings })));
+        self.keep(Draft::Run(Box::new(RunDraft::new(movements, legs, times, load))));
     }
 
     pub(super) fn keep(&mut self, draft: Draft) {
@@ -41,12 +40,12 @@ impl VirtualController<'_> {
 
     /// Plans the drafts (runs in parallel) and places them on the time line.
     pub(super) fn lay_out(&mut self) {
-        let model = self.model;
+        let (model, known) = (self.model, self.options.plans.as_deref());
         let drafts = std::mem::take(&mut self.drafts);
         let plans: Vec<Option<Planned>> = drafts
             .par_iter()
             .map(|draft| match draft {
-                Draft::Run(run) => Some(run.plan(model)),
+                Draft::Run(run) => Some(run.task.plan(model, known)),
                 _ => None,
             })
             .collect();
@@ -72,8 +71,8 @@ impl VirtualController<'_> {
 
     fn lay_run(&mut self, run: RunDraft, plan: Planned) {
         let (run, plan) = self.up_to_time_limit(run, plan);
-        let RunDraft { movements, legs, load, .. } = run;
-        let Planned { motions, mut pieces, problem, settling_s } = plan;
+        let RunDraft { movements, task: RunTask { legs, load, .. } } = run;
+        let Planned { motions, mut pieces, problem, settling_s, key } = plan;
         let stands = movements.last().map_or(0.0, |movement| self.stop_time(movement));
         if let Some((duration, _)) = pieces.last_mut() {
             *duration += stands;
@@ -103,6 +102,7 @@ impl VirtualController<'_> {
             settling: stands,
             start_known: self.certain,
             problem: problem.map(|(_, reason)| reason),
+            key,
         };
         // An output between fly-by movements precedes the event of their run.
         // The first movement ends at its target from any start.

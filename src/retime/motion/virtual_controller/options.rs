@@ -1,8 +1,10 @@
 //! Options of a simulation.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use crate::retime::motion::arrivals::Arrival;
+use crate::retime::motion::run_plan::Plans;
 use crate::retime::path::joint_path::Joints;
 
 /// Inputs of a simulation besides the program and the robot.
@@ -24,4 +26,6 @@ pub struct Options {
     pub passes: Option<u32>,
     /// Time limit of the simulation, s.
     pub max_time: Option<f64>,
+    /// Planned runs of earlier simulations, which are not planned again. No result depends on them.
+    pub plans: Option<Arc<Plans>>,
 }

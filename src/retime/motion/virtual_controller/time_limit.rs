@@ -52,11 +52,7 @@ impl VirtualController<'_> {
     }
 
     /// The run up to the movement that exceeds the time limit; the robot stops after it.
-    pub(super) fn up_to_time_limit(
-        &mut self,
-        mut run: RunDraft,
-        plan: Planned,
-    ) -> (RunDraft, Planned) {
+    pub(super) fn up_to_time_limit(&mut self, run: RunDraft, plan: Planned) -> (RunDraft, Planned) {
         let left = self.max_time() - self.time;
         let mut t = 0.0;
         let late = plan.pieces.iter().position(|(duration, _)| {
@@ -68,8 +64,8 @@ impl VirtualController<'_> {
         if late + 1 == run.movements.len() {
             return (run, plan);
         }
-        run.truncate(late + 1);
-        let plan = run.plan(self.model);
+        let run = run.truncated(late + 1);
+        let plan = run.task.plan(self.model, None);
         (run, plan)
     }
 

@@ -36,7 +36,6 @@ use super::super::edits::{replace, slower, with_speed};
 use super::super::flow::{Next, Through};
 use super::super::purpose::PROCESS_SPEED;
 use super::super::rule::Finding;
-use super::super::saving::Saving;
 use super::super::site::Site;
 use super::super::statements::called_instruction;
 use super::super::trace::Action;
@@ -114,19 +113,19 @@ pub(super) fn slower_run(
     let fastest = sites.iter().map(|site| site.facts.speed.map(|speed| speed.tcp));
     let fastest = fastest.collect::<Option<Vec<f64>>>()?.into_iter().fold(0.0, f64::max);
     let times = context.sites[index].executions.len() as f64;
-    let mut best: Option<(String, f64, Saving)> = None;
+    let mut found = Vec::new();
     for (name, speed) in slower(fastest).take_while(|(_, speed)| *speed >= PROCESS_SPEED) {
         let difference = context.difference(&spans, &|step| with_speed(step, speed))?;
         if difference.longer_s > slack * times {
             break;
         }
-        let Ok(saving) = difference.saving() else { continue };
-        let most = best.as_ref().map_or(f64::NEG_INFINITY, |(.., best)| best.energy_j);
-        if saving.time_s >= -ROUNDING && saving.energy_j > most {
-            best = Some((name, speed, saving));
+        if difference.time_s >= -ROUNDING {
+            found.push((name, speed, difference));
         }
     }
-    let (name, speed, saving) = best?;
+    found.sort_by(|(.., a), (.., b)| b.saved.energy_j().total_cmp(&a.saved.energy_j()));
+    let (name, speed, saving) =
+        found.into_iter().find_map(|(name, speed, it)| Some((name, speed, it.saving().ok()?)))?;
     let faster = |site: &&&Site<'_>| site.facts.speed.is_some_and(|s| s.tcp > speed);
     let lines: Vec<String> =
         sites.iter().filter(faster).map(|site| context.line(site.stmt.span).to_string()).collect();

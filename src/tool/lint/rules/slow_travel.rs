@@ -44,7 +44,6 @@ use nalgebra::Vector3;
 use super::super::context::Context;
 use super::super::edits::{faster, replace, with_predefined_speed};
 use super::super::rule::{Finding, MAX_RELATED};
-use super::super::saving::Saving;
 use super::super::settings::THRESHOLD_J;
 use crate::rapid::builtins::MoveForm;
 use crate::rapid::ir::movement::Settings;
@@ -59,6 +58,9 @@ rule!("EW206", "slow-travel", Speed, Robot, Info, "slow_travel.rs");
 const MIN_WAY: f64 = 0.15;
 /// Largest cosine between the tool's axis and a way across it: tools may lean by 30°.
 const MAX_ACROSS: f64 = 0.5;
+/// Statements on which the best speed is looked for: it differs little between the ways of a procedure, and
+/// the saving is simulated for all of them.
+const SAMPLE: usize = 2;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     let mut groups: BTreeMap<(RoutineId, String), Vec<usize>> = BTreeMap::new();
@@ -126,23 +128,31 @@ fn way(context: &Context<'_>, step: usize) -> Vector3<f64> {
     ends.map_or_else(Vector3::zeros, |(from, to)| to.translation.vector - from.translation.vector)
 }
 
+/// The predefined speed above `fastest` with which some statements take least energy, m/s; the
+/// statements are a sample of the given ones.
+fn best_speed(context: &Context<'_>, spans: &[Span], fastest: f64) -> Option<(String, f64)> {
+    let sample: Vec<Span> = spans.iter().copied().step_by(spans.len().div_ceil(SAMPLE)).collect();
+    let least = THRESHOLD_J * sample.len() as f64 / spans.len() as f64;
+    let mut best: Option<(String, f64, f64)> = None;
+    for (name, speed) in faster(fastest) {
+        let difference = context.difference(&sample, &|step| with_predefined_speed(step, speed))?;
+        let saved = difference.saved.energy_j();
+        if saved < best.as_ref().map_or(0.0, |(.., best)| *best) + least {
+            break;
+        }
+        best = Some((name, speed, saved));
+    }
+    best.map(|(name, speed, _)| (name, speed))
+}
+
 fn faster_travel(context: &Context<'_>, indices: &[usize]) -> Option<Finding> {
     let sites: Vec<_> = indices.iter().map(|site| &context.sites[*site]).collect();
     let spans: Vec<Span> = sites.iter().map(|site| site.stmt.span).collect();
     let speeds = sites.iter().map(|site| site.facts.speed.map(|speed| speed.tcp));
     let fastest = speeds.collect::<Option<Vec<f64>>>()?.into_iter().fold(0.0, f64::max);
-    let mut best: Option<(String, Saving)> = None;
-    for (name, speed) in faster(fastest) {
-        let difference = context.difference(&spans, &|step| with_predefined_speed(step, speed))?;
-        let least = best.as_ref().map_or(0.0, |(_, best)| best.energy_j) + THRESHOLD_J;
-        if difference.saved.energy_j() < least {
-            break;
-        }
-        if let Ok(saving) = difference.saving() {
-            best = Some((name, saving));
-        }
-    }
-    let (name, saving) = best?;
+    let (name, speed) = best_speed(context, &spans, fastest)?;
+    let difference = context.difference(&spans, &|step| with_predefined_speed(step, speed))?;
+    let saving = difference.saving().ok()?;
     let written = context.text(sites[0].speed.span);
     let (text, count) = match sites.len() {
         1 => (format!("{} travels", sites[0].name), String::new()),
