@@ -287,3 +287,91 @@ fn closing_a_document_updates_the_other_documents() {
     assert!(edit["newText"].as_str().unwrap().starts_with('z'), "{actions}");
     client.stop();
 }
+
+/// Lenses, hints and calls have the costs of the simulated cycle.
+#[test]
+fn costs_stand_above_routines_behind_statements_and_at_calls() {
+    let folder = tempfile::tempdir().unwrap();
+    let home = "[[0,-12,14,20,105,-136],[9E9,9E9,9E9,9E9,9E9,9E9]]";
+    let away = "[[40,-12,14,20,105,-136],[9E9,9E9,9E9,9E9,9E9,9E9]]";
+    let main = format!(
+        "MODULE Main\nPROC main()\n  MoveAbsJ {home},v1000,fine,tool0;\n  rVisit;\n  WaitTime 2;\n  rVisit;\n\
+         ENDPROC\nPROC rNever()\n  MoveAbsJ {home},v1000,fine,tool0;\nENDPROC\nENDMODULE\n"
+    );
+    let visit = format!(
+        "MODULE Visit\nPROC rVisit()\n  rGo;\n  MoveAbsJ {home},v1000,fine,tool0;\nENDPROC\n\
+         PROC rGo()\n  MoveAbsJ {away},v1000,fine,tool0;\nENDPROC\nENDMODULE\n"
+    );
+    let write = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        fs::write(&path, text).unwrap();
+        path
+    };
+    let (main, visit) = (write("Main.mod", &main), write("Visit.mod", &visit));
+    let mut client = Client::start(&json!({ "robot": "IRB1600-10/1.45" }));
+    let (main, visit) = (client.open(&main), client.open(&visit));
+
+    // Joules and seconds of "12.3 J, 0.456 s a cycle".
+    let costs = |text: &Value| -> [f64; 2] {
+        let text = text.as_str().unwrap();
+        let figures = text.rsplit_once(" J, ").unwrap();
+        let joules = figures.0.rsplit(' ').next().unwrap().parse().unwrap();
+        [joules, figures.1.split(' ').next().unwrap().parse().unwrap()]
+    };
+    let close = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs() < 0.2 && (a[1] - b[1]).abs() < 0.002;
+    let document = |uri: &str| json!({ "uri": uri });
+    let mut lenses = |uri: &str| {
+        let lenses =
+            client.request("textDocument/codeLens", &json!({ "textDocument": document(uri) }));
+        let lenses = lenses.as_array().unwrap().clone();
+        lenses
+            .iter()
+            .map(|it| {
+                (it["range"]["start"]["line"].as_u64().unwrap(), costs(&it["command"]["title"]))
+            })
+            .collect::<Vec<_>>()
+    };
+    // rNever is not executed.
+    let [(1, whole)] = lenses(&main)[..] else { panic!("main only") };
+    let [(1, visits), (5, goes)] = lenses(&visit)[..] else { panic!("two routines") };
+
+    let all =
+        json!({ "start": { "line": 0, "character": 0 }, "end": { "line": 99, "character": 0 } });
+    let mut hints = |uri: &str, range: &Value| {
+        let asked = json!({ "textDocument": document(uri), "range": range });
+        let hints = client.request("textDocument/inlayHint", &asked);
+        let hints = hints.as_array().unwrap().clone();
+        hints
+            .iter()
+            .map(|it| (it["position"]["line"].as_u64().unwrap(), costs(&it["label"])))
+            .collect::<Vec<_>>()
+    };
+    let own = hints(&main, &all);
+    assert_eq!(own.iter().map(|(line, _)| *line).collect::<Vec<_>>(), [2, 4]);
+    assert!((own[1].1[1] - 2.0).abs() < 1e-3, "{own:?}");
+    let there = hints(&visit, &all);
+    assert_eq!(there.len(), 2);
+    assert_eq!(
+        hints(
+            &visit,
+            &json!({ "start": { "line": 6, "character": 0 }, "end": { "line": 7, "character": 0 } })
+        ),
+        there[1..]
+    );
+    let sum = |parts: &[[f64; 2]]| parts.iter().fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
+    assert!(close(goes, there[1].1));
+    assert!(close(visits, sum(&[there[0].1, there[1].1])));
+    assert!(close(whole, sum(&[own[0].1, own[1].1, visits])), "{whole:?} {own:?} {visits:?}");
+
+    // Both calls of rVisit together take what the routine takes.
+    let place =
+        json!({ "textDocument": document(&visit), "position": { "line": 1, "character": 6 } });
+    let items = client.request("textDocument/prepareCallHierarchy", &place);
+    let incoming = client.request("callHierarchy/incomingCalls", &json!({ "item": items[0] }));
+    assert_eq!(incoming[0]["fromRanges"].as_array().unwrap().len(), 2);
+    assert!(close(costs(&incoming[0]["from"]["detail"]), visits), "{incoming}");
+    let outgoing = client.request("callHierarchy/outgoingCalls", &json!({ "item": items[0] }));
+    assert_eq!(outgoing[0]["to"]["name"], "rGo");
+    assert!(close(costs(&outgoing[0]["to"]["detail"]), goes), "{outgoing}");
+    client.stop();
+}

@@ -7,7 +7,7 @@ mod lsp_client;
 
 use serde_json::{Value, json};
 
-use lsp_client::{Client, Marked, Memory, Place, uri};
+use lsp_client::{Client, Marked, Memory, Place, name, uri};
 
 const CELL: &[(&str, &str)] = &[
     (
@@ -288,4 +288,21 @@ fn parts_of_several_lines_can_be_folded() {
         .collect();
     assert_eq!(ranges, [(0, 1), (2, 10), (3, 9), (4, 8), (6, 8)]);
     assert_eq!(found[0]["kind"], "comment");
+}
+
+#[test]
+fn strings_that_name_a_module_are_links() {
+    let main = "MODULE Main\nPROC main()\nLoad \\Dynamic,\"HOME:/parts/PART.mod\";\n\
+                TPWrite \"Part\";\nLoad \\Dynamic,\"HOME:\"\\File:=\"Gone.mod\";\nENDPROC\nENDMODULE\n";
+    let files = [("Main.mod", main), ("parts/Part.mod", "MODULE Part\nENDMODULE\n")];
+    let mut client = Client::start(Memory::new(&files), &json!({}));
+    let links = client.about("documentLink", "Main.mod");
+    let links = links.as_array().unwrap();
+    assert_eq!(links.len(), 1, "{links:?}");
+    assert_eq!(name(&links[0]["target"]), "parts/Part.mod");
+    let (start, end) = (&links[0]["range"]["start"], &links[0]["range"]["end"]);
+    assert_eq!(
+        (start, end),
+        (&json!({ "line": 2, "character": 15 }), &json!({ "line": 2, "character": 35 }))
+    );
 }

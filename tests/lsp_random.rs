@@ -24,8 +24,8 @@ use lsp_client::{Client, Memory, Place, edited, uri};
 /// Renames in each program.
 const RENAMES: usize = 6;
 /// Edits of the random session, and after how many of them it is compared with a new one.
-const EDITS: usize = 400;
-const COMPARED_AFTER: usize = 25;
+const EDITS: usize = 5_000;
+const COMPARED_AFTER: usize = 250;
 
 /// The modules below a folder of `fixtures`.
 fn modules(folder: &Path, found: &mut Vec<PathBuf>) {

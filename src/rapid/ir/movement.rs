@@ -211,6 +211,20 @@ pub struct Argument {
     pub datum: Datum,
 }
 
+/// A call of a routine that has not returned yet.
+#[derive(Debug, PartialEq, Eq)]
+pub struct ActiveCall {
+    /// The name of the routine in the call; the expression of a late call.
+    pub name: Span,
+    /// The call of the routine that contains this call.
+    pub within: Option<Arc<ActiveCall>>,
+}
+
+/// The names in the calls that led to a statement, the last call first.
+pub fn calls(last: Option<&Arc<ActiveCall>>) -> impl Iterator<Item = Span> {
+    std::iter::successors(last, |call| call.within.as_ref()).map(|call| call.name)
+}
+
 /// A movement as it is executed.
 #[derive(Clone, Debug)]
 pub struct Movement {
@@ -225,7 +239,7 @@ pub struct Movement {
     /// Name of the routine that contains it.
     pub routine: Arc<str>,
     /// The call of its routine; none in the routine that starts the program.
-    pub called_at: Option<Span>,
+    pub call: Option<Arc<ActiveCall>>,
     /// Circle point of a circular movement.
     pub via: Option<RobTarget>,
     /// Where it goes.
@@ -292,6 +306,8 @@ pub struct Wait {
     pub span: Span,
     /// Name of the routine that contains it.
     pub routine: Arc<str>,
+    /// The call of its routine; none in the routine that starts the program.
+    pub call: Option<Arc<ActiveCall>>,
     /// Duration, s, if the program states it.
     pub duration: Option<f64>,
     /// The argument with the duration, if it consists only of literals and constants.

@@ -19,6 +19,7 @@ use super::rule::{CycleFigures, Finding};
 use super::rules::unused_suppression;
 use super::runs;
 use super::stored::{Reports, Store};
+use super::weighing::state_needs;
 use crate::arm::robot::Model;
 use crate::rapid::syntax::SyntaxError;
 use crate::rapid::text::Span;
@@ -191,6 +192,7 @@ fn lint_group(
     let time = cycle.as_ref().map(|cycle| cycle.simulation.cycle_s);
     let figures = energy.zip(time).map(|(energy_j, time_s)| CycleFigures { energy_j, time_s });
     offer_fixes(job, known, group, read, cycle.as_ref(), &mut findings);
+    state_needs(&context, &mut findings);
     for finding in &mut findings {
         finding.cycle = figures;
         finding.severity = severity(finding);

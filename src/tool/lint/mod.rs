@@ -37,6 +37,7 @@ pub mod stored;
 pub mod suppress;
 pub mod system;
 pub mod trace;
+mod weighing;
 mod words;
 mod work;
 

@@ -4,7 +4,7 @@ use super::rule::Rule;
 use super::rules as r;
 
 /// All rules, ordered by code.
-pub static ALL: [&Rule; 39] = [
+pub static ALL: [&Rule; 40] = [
     &r::unused_suppression::RULE,
     &r::unneeded_stop_point::RULE,
     &r::stop_in_line::RULE,
@@ -29,6 +29,7 @@ pub static ALL: [&Rule; 39] = [
     &r::near_singular_line::RULE,
     &r::long_way_round::RULE,
     &r::needless_home_run::RULE,
+    &r::far_via_point::RULE,
     &r::tool_without_mass::RULE,
     &r::gripping_without_payload::RULE,
     &r::payload_never_reset::RULE,

@@ -136,6 +136,8 @@ pub struct Finding {
     pub confidence: Confidence,
     /// Energy in a cycle of what the change shortens by an unknown part, J: no saving, but its limit.
     pub at_stake_j: Option<f64>,
+    /// What would tell its joules, if they are not known.
+    pub needs: Option<String>,
     /// Number of places that it stands for.
     pub count: usize,
     /// The cycle that it belongs to, if it is simulated with energies.
@@ -190,6 +192,7 @@ impl Finding {
             severity: rule.severity,
             confidence: Confidence::Usual,
             at_stake_j: None,
+            needs: None,
             count: 1,
             cycle: None,
         }
@@ -221,6 +224,12 @@ impl Finding {
         saving: impl Into<Option<Saving>>,
     ) -> Finding {
         Finding { change: change.into(), saving: saving.into(), ..self }
+    }
+
+    /// The finding with what would tell its joules.
+    #[must_use]
+    pub fn needing(self, needs: &str) -> Finding {
+        Finding { needs: Some(needs.to_owned()), ..self }
     }
 
     /// The finding with a further assumption of the saving.

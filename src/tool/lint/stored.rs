@@ -107,6 +107,7 @@ struct StoredFinding {
     severity: u8,
     doubtful: bool,
     at_stake_j: Option<Bits>,
+    needs: Option<String>,
     count: usize,
     /// Energy and time.
     cycle: Option<[Bits; 2]>,
@@ -146,6 +147,7 @@ impl Stored {
                 severity: SEVERITIES.iter().position(|of| *of == it.severity)? as u8,
                 doubtful: it.confidence == Confidence::Low,
                 at_stake_j: it.at_stake_j.map(f64::to_bits),
+                needs: it.needs.clone(),
                 count: it.count,
                 cycle: it.cycle.map(|cycle| [cycle.energy_j, cycle.time_s].map(f64::to_bits)),
             })
@@ -195,6 +197,7 @@ impl Stored {
                 severity: *SEVERITIES.get(usize::from(it.severity))?,
                 confidence: if it.doubtful { Confidence::Low } else { Confidence::Usual },
                 at_stake_j: it.at_stake_j.map(f64::from_bits),
+                needs: it.needs,
                 count: it.count,
                 cycle,
             })

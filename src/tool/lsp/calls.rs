@@ -1,12 +1,14 @@
 //! Who calls whom.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use gen_lsp_types::{
     CallHierarchyIncomingCall, CallHierarchyItem, CallHierarchyOutgoingCall, Range, SymbolKind,
 };
 
+use super::costs::{of_parts, sum};
 use super::entity::{Declared, declared, entity};
+use super::findings::Analysis;
 use super::workspace::View;
 use crate::rapid::names::{DeclarationId, Kind, Meaning, Names, Role, RoutineKind};
 use crate::rapid::text::{FileId, Span};
@@ -17,27 +19,37 @@ pub(super) fn prepare(view: View<'_>, byte: u32) -> Vec<CallHierarchyItem> {
     routines.map(|one| item(view, one)).collect()
 }
 
-/// The calls of the routine at a byte, by the routines that contain them.
-pub(super) fn incoming(view: View<'_>, byte: u32) -> Vec<CallHierarchyIncomingCall> {
+/// The calls of the routine at a byte, by the routines that contain them, with what they take in a cycle.
+pub(super) fn incoming(
+    view: View<'_>,
+    analysis: Option<&Analysis>,
+    byte: u32,
+) -> Vec<CallHierarchyIncomingCall> {
     let Some(entity) = entity(view, byte) else { return Vec::new() };
-    let mut callers: BTreeMap<Span, (CallHierarchyItem, Vec<Range>)> = BTreeMap::new();
+    let mut callers: BTreeMap<Span, Edge> = BTreeMap::new();
     for (place, role) in entity.uses {
         if !is_call(role) {
             continue;
         }
         let Some(names) = view.project.names_of(place.file).next() else { continue };
         let Some(caller) = routine_at(names, place.file, place.start) else { continue };
-        let one = || (item(view, caller), Vec::new());
-        let (_, ranges) = callers.entry(caller.declaration().name).or_insert_with(one);
-        ranges.push(view.positions_of(place.file).range(place));
+        let edge = callers.entry(caller.declaration().name);
+        edge.or_insert_with(|| Edge::to(view, caller)).add(place);
     }
-    let call = |(from, from_ranges)| CallHierarchyIncomingCall { from, from_ranges };
+    let call = |edge: Edge| {
+        let (from, from_ranges) = edge.shown(view, analysis);
+        CallHierarchyIncomingCall { from, from_ranges }
+    };
     callers.into_values().map(call).collect()
 }
 
-/// The routines of a user that the routine at a byte calls.
-pub(super) fn outgoing(view: View<'_>, byte: u32) -> Vec<CallHierarchyOutgoingCall> {
-    let mut callees: BTreeMap<Span, (CallHierarchyItem, Vec<Range>)> = BTreeMap::new();
+/// The routines of a user that the routine at a byte calls, with what the calls take in a cycle.
+pub(super) fn outgoing(
+    view: View<'_>,
+    analysis: Option<&Analysis>,
+    byte: u32,
+) -> Vec<CallHierarchyOutgoingCall> {
+    let mut callees: BTreeMap<Span, Edge> = BTreeMap::new();
     let Some(caller) = declared(view, byte).into_iter().find(|one| is_own_routine(*one)) else {
         return Vec::new();
     };
@@ -50,17 +62,54 @@ pub(super) fn outgoing(view: View<'_>, byte: u32) -> Vec<CallHierarchyOutgoingCa
             if !inside || !is_call(one.role) || !is_own_routine(callee) {
                 continue;
             }
-            let first = || (item(view, callee), Vec::new());
-            let (_, ranges) = callees.entry(callee.declaration().name).or_insert_with(first);
+            let edge = callees.entry(callee.declaration().name);
             let place = Span { start: one.start, end: one.end, ..whole };
-            let range = view.positions_of(whole.file).range(place);
-            if !ranges.contains(&range) {
-                ranges.push(range);
-            }
+            edge.or_insert_with(|| Edge::to(view, callee)).add(place);
         }
     }
-    let call = |(to, from_ranges)| CallHierarchyOutgoingCall { to, from_ranges };
+    let call = |edge: Edge| {
+        let (to, from_ranges) = edge.shown(view, analysis);
+        CallHierarchyOutgoingCall { to, from_ranges }
+    };
     callees.into_values().map(call).collect()
+}
+
+/// The calls between two routines.
+struct Edge {
+    /// The other routine.
+    item: CallHierarchyItem,
+    /// The names in the calls.
+    places: BTreeSet<Span>,
+}
+
+impl Edge {
+    fn to(view: View<'_>, routine: Declared<'_>) -> Edge {
+        Edge { item: item(view, routine), places: BTreeSet::new() }
+    }
+
+    fn add(&mut self, place: Span) {
+        self.places.insert(place);
+    }
+
+    /// The other routine with what the calls take in a cycle, and the places of the calls.
+    fn shown(self, view: View<'_>, analysis: Option<&Analysis>) -> (CallHierarchyItem, Vec<Range>) {
+        let Edge { mut item, places } = self;
+        let costs = analysis.and_then(|analysis| {
+            let number = |place: &Span| {
+                let path = &view.project.module(place.file).file.path;
+                Some(Span { file: analysis.number_of(path)?, ..*place })
+            };
+            let mut parts: Vec<Span> = places.iter().map(number).collect::<Option<_>>()?;
+            parts.sort();
+            sum(of_parts(analysis, &parts).into_iter().flatten())
+        });
+        if let Some(costs) = costs {
+            let module = item.detail.map(|module| format!("{module}, ")).unwrap_or_default();
+            item.detail = Some(format!("{module}{costs} a cycle"));
+        }
+        let range = |place: &Span| view.positions_of(place.file).range(*place);
+        (item, places.iter().map(range).collect())
+    }
 }
 
 fn is_call(role: Role) -> bool {

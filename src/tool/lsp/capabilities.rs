@@ -1,9 +1,10 @@
 //! What the server can do.
 
 use gen_lsp_types::{
-    CodeActionKind, CodeActionOptions, CompletionOptions, DiagnosticOptions, InitializeResult,
-    RenameOptions, SemanticTokensOptions, ServerCapabilities, ServerInfo, SignatureHelpOptions,
-    TextDocumentSyncKind, TextDocumentSyncOptions,
+    CodeActionKind, CodeActionOptions, CodeLensOptions, CompletionOptions, DiagnosticOptions,
+    DocumentLinkOptions, InitializeResult, RenameOptions, SemanticTokensOptions,
+    ServerCapabilities, ServerInfo, SignatureHelpOptions, TextDocumentSyncKind,
+    TextDocumentSyncOptions,
 };
 use serde_json::json;
 
@@ -52,6 +53,9 @@ pub(super) fn initialize_result(client: &Client) -> InitializeResult {
             }),
             document_formatting_provider: Some(true.into()),
             document_range_formatting_provider: Some(true.into()),
+            code_lens_provider: Some(CodeLensOptions::default()),
+            inlay_hint_provider: Some(true.into()),
+            document_link_provider: Some(DocumentLinkOptions::default()),
             folding_range_provider: Some(true.into()),
             call_hierarchy_provider: Some(true.into()),
             semantic_tokens_provider: Some(

@@ -29,6 +29,8 @@ struct Folder {
 /// The findings in a document.
 pub(super) struct Analysis {
     pub(super) file: SourceFile,
+    /// The paths of all files of the programs, by number.
+    paths: Rc<[String]>,
     pub(super) examined: Rc<Examined>,
     pub(super) dynamics: bool,
 }
@@ -78,12 +80,14 @@ impl Findings {
         };
         let dynamics = programs.model.as_ref().is_some_and(Model::has_dynamics);
         let examined = Rc::new(examine_file(&programs.job(), own, kept));
+        let paths: Rc<[String]> = programs.files.iter().map(|file| file.path.clone()).collect();
         let together = |index: &usize| examined.programs.iter().all(|files| files.contains(index));
         let concerned = names.into_iter().filter(|(index, _)| *index == own || together(index));
         let mut found = Vec::new();
         for (index, name) in concerned {
             let file = programs.files[index].clone();
-            let analysis = Analysis { file, examined: Rc::clone(&examined), dynamics };
+            let (paths, examined) = (Rc::clone(&paths), Rc::clone(&examined));
+            let analysis = Analysis { file, paths, examined, dynamics };
             self.analyses.insert(name.to_owned(), analysis);
             found.push(name.to_owned());
         }
@@ -92,6 +96,11 @@ impl Findings {
 }
 
 impl Analysis {
+    /// The number of a file in the programs of the linter.
+    pub(super) fn number_of(&self, path: &str) -> Option<FileId> {
+        self.paths.iter().position(|known| known == path).map(|index| FileId(index as u32))
+    }
+
     /// The findings in the document itself.
     pub(super) fn own_findings(&self) -> impl Iterator<Item = &Finding> {
         self.examined.report.findings.iter().filter(|finding| finding.span.file == self.file.id)

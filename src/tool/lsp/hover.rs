@@ -3,7 +3,7 @@
 use gen_lsp_types::{Contents, Hover, MarkupContent, MarkupKind};
 
 use super::comment::comment_of;
-use super::costs::Costs;
+use super::costs::StatementCosts;
 use super::entity::{Declared, identifier, meanings};
 use super::signature::{name, signature};
 use super::workspace::View;
@@ -12,7 +12,7 @@ use crate::rapid::text::Span;
 
 /// Time and energy of the movement or wait at a byte, summed over its executions in a cycle, then the
 /// declaration of the identifier with its comment.
-pub(super) fn hover(view: View<'_>, byte: u32, costs: Option<&Costs>) -> Option<Hover> {
+pub(super) fn hover(view: View<'_>, byte: u32, costs: Option<&StatementCosts>) -> Option<Hover> {
     let mut parts: Vec<String> = costs.map(ToString::to_string).into_iter().collect();
     for (names, one) in meanings(view, byte) {
         parts.extend(described(view, names, one));

@@ -25,6 +25,8 @@ mod folding;
 mod formatting;
 mod host;
 mod hover;
+mod lens;
+mod links;
 mod module;
 mod options;
 mod outline;

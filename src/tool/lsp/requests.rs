@@ -1,7 +1,8 @@
 //! Answers to requests.
 
 use gen_lsp_types::{
-    CodeActionParams, LspRequestMethod, Position, Range, TextDocumentIdentifier, Uri,
+    CodeActionParams, InlayHintParams, LspRequestMethod, Position, Range, TextDocumentIdentifier,
+    Uri,
 };
 use lsp_server::{ErrorCode, Request, Response};
 use serde_json::{Value, from_value, json};
@@ -9,12 +10,15 @@ use serde_json::{Value, from_value, json};
 use super::actions::code_actions;
 use super::calls;
 use super::completion;
-use super::costs::costs_at;
+use super::costs::of_statement;
 use super::definition::{self, Declarations};
+use super::findings::Analysis;
 use super::folding::folding_ranges;
 use super::formatting::formatting;
 use super::host::Host;
 use super::hover::hover;
+use super::lens::{code_lenses, inlay_hints};
+use super::links::document_links;
 use super::rename::{self, Refusal};
 use super::semantic_tokens::semantic_tokens;
 use super::server::Server;
@@ -116,10 +120,10 @@ fn result<H: Host>(server: &mut Server<H>, method: &str, params: Value) -> Resul
             at(server, params, |view, byte| json!(calls::prepare(view, byte)))
         }
         LspRequestMethod::CallHierarchyIncomingCalls => {
-            caller(server, &params, |view, byte| json!(calls::incoming(view, byte)))
+            caller(server, &params, |view, costs, byte| json!(calls::incoming(view, costs, byte)))
         }
         LspRequestMethod::CallHierarchyOutgoingCalls => {
-            caller(server, &params, |view, byte| json!(calls::outgoing(view, byte)))
+            caller(server, &params, |view, costs, byte| json!(calls::outgoing(view, costs, byte)))
         }
         LspRequestMethod::TextDocumentPrepareRename => prepare_rename(server, params),
         LspRequestMethod::TextDocumentRename => rename(server, params),
@@ -133,6 +137,19 @@ fn result<H: Host>(server: &mut Server<H>, method: &str, params: Value) -> Resul
             let query = params.get("query").and_then(Value::as_str).unwrap_or_default();
             let views = server.workspace.projects(&server.host, &server.options);
             Ok(json!(symbols::of_workspace(&views, query)))
+        }
+        LspRequestMethod::TextDocumentCodeLens => {
+            let uri = from_value::<Document>(params)?.text_document.uri.0;
+            Ok(analysed(server, &uri, |view, costs| Some(json!(code_lenses(view, costs?)))))
+        }
+        LspRequestMethod::TextDocumentInlayHint => {
+            let InlayHintParams { text_document, range, .. } = from_value(params)?;
+            Ok(analysed(server, &text_document.uri.0, |view, costs| {
+                Some(json!(inlay_hints(view.positions(), costs?, &range)))
+            }))
+        }
+        LspRequestMethod::TextDocumentDocumentLink => {
+            document(server, params, |view| json!(document_links(view)))
         }
         LspRequestMethod::TextDocumentFoldingRange => {
             document(server, params, |view| json!(folding_ranges(view)))
@@ -179,12 +196,25 @@ fn at<H: Host>(
 fn caller<H: Host>(
     server: &mut Server<H>,
     params: &Value,
-    ask: impl FnOnce(View<'_>, u32) -> Value,
+    ask: impl FnOnce(View<'_>, Option<&Analysis>, u32) -> Value,
 ) -> Result<Value, Failure> {
     let item = params.get("item").cloned().unwrap_or_default();
     let Caller { uri, selection_range } = from_value(item)?;
-    let ask = |view: View<'_>| ask(view, view.positions().byte(selection_range.start));
-    Ok(server.view(&uri.0).map_or(Value::Null, ask))
+    Ok(analysed(server, &uri.0, |view, costs| {
+        Some(ask(view, costs, view.positions().byte(selection_range.start)))
+    }))
+}
+
+/// Answers about a document with what its programs take; null if it is not known.
+fn analysed<H: Host>(
+    server: &mut Server<H>,
+    uri: &str,
+    ask: impl FnOnce(View<'_>, Option<&Analysis>) -> Option<Value>,
+) -> Value {
+    server.lint(uri);
+    let Server { workspace, host, options, findings, .. } = server;
+    let view = workspace.view(host, options, uri);
+    view.and_then(|view| ask(view, findings.get(uri))).unwrap_or_default()
 }
 
 fn hovered<H: Host>(server: &mut Server<H>, params: Value) -> Result<Value, Failure> {
@@ -197,7 +227,7 @@ fn hovered<H: Host>(server: &mut Server<H>, params: Value) -> Result<Value, Fail
     let byte = view.positions().byte(position);
     let analysis = findings.get(uri).filter(|_| linted);
     // The file has another number in the programs of the linter.
-    let costs = analysis.and_then(|analysis| costs_at(analysis, byte));
+    let costs = analysis.and_then(|analysis| of_statement(analysis, byte));
     Ok(json!(hover(view, byte, costs.as_ref())))
 }
 

@@ -1,12 +1,14 @@
 //! Calls of the program's own routines.
 
+use std::sync::Arc;
+
 use super::eval::declared_twice;
 use super::executor::{Cell, CellId, Executor, Frame, MAX_CALL_DEPTH};
 use super::flow::{Flow, Raised};
 use crate::rapid::ir::hir::{
     Arg, ArgKind, Call, Callee, Expr, ExprKind, Ident, Param, ParamMode, RoutineKind, Stmt,
 };
-use crate::rapid::ir::movement::Unresolved;
+use crate::rapid::ir::movement::{ActiveCall, Unresolved};
 use crate::rapid::ir::program::{RoutineId, Symbol};
 use crate::rapid::ir::value::{Datum, Dependence, Origin};
 use crate::rapid::text::Span;
@@ -117,7 +119,7 @@ impl Executor<'_> {
         id: RoutineId,
         names: Vec<(String, CellId)>,
         present: Vec<String>,
-        called_at: Option<Span>,
+        at: Option<Span>,
     ) -> Flow {
         let program = self.program;
         let routine = program.routine(id);
@@ -126,12 +128,14 @@ impl Executor<'_> {
         for (_, cell) in &names {
             given.join(&self.cells[*cell].value.origin);
         }
+        let within = self.frames.last().and_then(|frame| frame.call.clone());
+        let call = at.map(|name| Arc::new(ActiveCall { name, within }));
         self.frames.push(Frame {
             module: id.module,
             routine: routine.name.text.as_str().into(),
             id: Some(id),
             names,
-            called_at,
+            call,
             present,
             base: cells,
             ..Frame::default()

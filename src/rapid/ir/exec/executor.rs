@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::machine::Machine;
 use crate::rapid::ir::hir::Expr;
-use crate::rapid::ir::movement::Settings;
+use crate::rapid::ir::movement::{ActiveCall, Settings};
 use crate::rapid::ir::program::{DataId, Program, RoutineId};
 use crate::rapid::ir::value::{Datum, Origin, Value};
 use crate::rapid::text::Span;
@@ -63,7 +63,7 @@ pub(super) struct Frame {
     pub(super) module: usize,
     pub(super) routine: Arc<str>,
     /// The call that started it.
-    pub(super) called_at: Option<Span>,
+    pub(super) call: Option<Arc<ActiveCall>>,
     /// Parameters, local data and loop variables, innermost last.
     pub(super) names: Vec<(String, CellId)>,
     /// Optional parameters that were given.

@@ -150,7 +150,7 @@ impl Executor<'_> {
             plain: signature.kind == MoveKind::Plain,
             span: stmt.span,
             routine: self.frame().routine.clone(),
-            called_at: self.frame().called_at,
+            call: self.frame().call.clone(),
             via,
             target,
             external,

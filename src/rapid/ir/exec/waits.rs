@@ -187,6 +187,7 @@ impl Executor<'_> {
             instruction: text.into(),
             span,
             routine,
+            call: self.frame().call.clone(),
             duration,
             constant,
             max_time,

@@ -24,6 +24,7 @@ pub(super) mod detour;
 pub(super) mod duplicated_target;
 pub(super) mod dwell_at_heavy_pose;
 pub(super) mod energy_signal_unused;
+pub(super) mod far_via_point;
 pub(super) mod fixed_wait;
 pub(super) mod grip_in_passing;
 pub(super) mod gripping_without_payload;

@@ -47,6 +47,7 @@ use super::super::statements::called_name;
 use crate::rapid::builtins::MoveForm;
 use crate::rapid::ir::graph::Step as GraphStep;
 use crate::rapid::ir::hir::{Ident, Stmt, StmtKind};
+use crate::rapid::ir::movement::Movement;
 use crate::rapid::text::Span;
 use crate::retime::motion::Step;
 use crate::retime::path::joint_path::{Joints, are_close};
@@ -132,7 +133,7 @@ fn idle_calls<'c>(
     site: &Site<'_>,
     idle: &impl Fn(usize) -> bool,
 ) -> Vec<(&'c Stmt, &'c Ident)> {
-    let called_at = |step: usize| context.trace[step].what.movement()?.called_at;
+    let called_at = |step: usize| called_at(context.trace[step].what.movement()?);
     let calls = context.flow.callers(site.place.0).iter().filter_map(|place| {
         let stmt = context.flow.statement(*place)?;
         let name = called_name(stmt)?;
@@ -145,6 +146,11 @@ fn idle_calls<'c>(
         (some && visits.all(|step| idle(*step))).then_some((stmt, name))
     });
     calls.collect()
+}
+
+/// The name of the routine of a movement where it is called.
+fn called_at(movement: &Movement) -> Option<Span> {
+    movement.call.as_ref().map(|call| call.name)
 }
 
 /// Whether all that the routine of a movement does is that movement.
@@ -163,7 +169,7 @@ fn does_nothing_else(context: &Context<'_>, site: &Site<'_>) -> bool {
 /// The change that removes a movement, for the executions that belong to a call.
 fn without(step: &Step, call: Span) -> Vec<Step> {
     match step {
-        Step::Move(movement) if movement.called_at == Some(call) => Vec::new(),
+        Step::Move(movement) if called_at(movement) == Some(call) => Vec::new(),
         other => vec![other.clone()],
     }
 }

@@ -164,5 +164,6 @@ fn hurries(context: &Context<'_>, index: usize) -> Option<Finding> {
          travel saves",
         site.name
     );
-    Some(Finding::new(&RULE, site.stmt.span, message))
+    let needs = "the time of the input (--input SIGNAL=SECONDS)";
+    Some(Finding::new(&RULE, site.stmt.span, message).needing(needs))
 }

@@ -61,6 +61,7 @@ fn finding(finding: &Finding, files: &[SourceFile]) -> Value {
         "saving_interval_j": saving.map(|s| [s.low_j, s.high_j]),
         "per": if saving.is_some() { "cycle" } else { "execution" },
         "at_stake_j": finding.at_stake_j,
+        "needs": finding.needs,
         "confidence": finding.confidence.name(),
         "places": finding.count,
         "assumptions": finding.assumptions,

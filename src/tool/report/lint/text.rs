@@ -39,6 +39,8 @@ fn diagnostic(finding: &Finding) -> Diagnostic {
         .extend(related.map(|(span, message)| Label { span: *span, message: message.clone() }));
     let assumed = finding.assumptions.iter().map(|text| Note::Note(format!("assumes that {text}")));
     diagnostic.notes.extend(assumed);
+    let needs = finding.needs.as_ref().map(|needs| Note::Note(format!("its joules need {needs}")));
+    diagnostic.notes.extend(needs);
     if let Some(fix) = &finding.fix {
         diagnostic.notes.push(Note::Help(
             match fix.applicability {

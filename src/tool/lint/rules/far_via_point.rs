@@ -1,0 +1,103 @@
+//! The robot goes far round over a point where nothing happens.
+//!
+//! ## What it does
+//! Finds joint movements over a point behind which the next joint movement leads back: the way over the
+//! point takes the axes half as long again as the direct one, or more.
+//!
+//! ## Why it wastes energy
+//! The axes accelerate, brake and turn round for a way that nobody needs.
+//!
+//! ## How the saving is computed
+//! The cycle is laid on a time line without the movement to the point.
+//!
+//! ## Example
+//! ```text
+//! MoveJ pPickUp, v1000, z50, tGrip;
+//! MoveJ pFarLeft, v1000, z50, tGrip;
+//! MoveJ pPlaceUp, v1000, z50, tGrip;
+//! ```
+//!
+//! ## Use instead
+//! ```text
+//! MoveJ pPickUp, v1000, z50, tGrip;
+//! MoveJ pPlaceUp, v1000, z50, tGrip;
+//! ```
+//!
+//! ## Safety
+//! Without a fix: the point may lead round something that no program shows. A point nearer to the direct
+//! way saves a part of it.
+//!
+//! ## Assumptions
+//! Points where all executions come from one side and go on to the same movement. Points next to work or in
+//! a process, ways below 500 mm/s, and loops that end where they begin (EW402, EW403) are left alone. The
+//! confidence is low.
+
+use super::super::context::Context;
+use super::super::rule::Finding;
+use super::there_and_back::only_next;
+use crate::arm::robot::Model;
+use crate::rapid::builtins::MoveForm;
+use crate::retime::path::joint_path::Joints;
+
+rule!("EW407", "far-via-point", Path, Robot, Info, "far_via_point.rs");
+
+/// Least time of the axes over the point, as a multiple of that of the direct way: a point half as far to the
+/// side as the way is long has 1.4, which leads round things.
+const MIN_DETOUR: f64 = 1.5;
+/// Shortest direct way, s of the slowest axis: shorter ones are loops.
+const MIN_DIRECT_S: f64 = 0.1;
+/// Slower movements are taken for a process, m/s: as in EW402.
+const MIN_SPEED: f64 = 0.5;
+
+fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
+    let Some(model) = context.model else { return };
+    findings.extend((0..context.sites.len()).filter_map(|site| detour(context, model, site)));
+}
+
+fn detour(context: &Context<'_>, model: &Model, via: usize) -> Option<Finding> {
+    let next = only_next(context, via)?;
+    let joint = |site: usize| {
+        let site = &context.sites[site];
+        let form = matches!(site.signature.form, MoveForm::Joint | MoveForm::AbsJ);
+        form && site.is_plain() && site.facts.speed.is_some_and(|speed| speed.tcp >= MIN_SPEED)
+    };
+    let site = &context.sites[via];
+    if !joint(via)
+        || !joint(next)
+        || site.executions.is_empty()
+        || context.is_next_to_work(via)
+        || context.is_in_process(via)
+        || !context.has_process(&[via, next])
+        || !site.executions.iter().all(|step| is_detour(context, model, *step))
+    {
+        return None;
+    }
+    let saving = context.evaluate(&[site.stmt.span], &|_| Vec::new()).ok()??;
+    let message = format!("{} goes far round over a point where nothing happens", site.name);
+    let finding = Finding::new(&RULE, site.stmt.span, message)
+        .with_related(context.sites[next].stmt.span, "the next movement leads back")
+        .with_saving("leaving it out", saving)
+        .with_assumption("the direct way is free")
+        .doubtful();
+    Some(finding)
+}
+
+/// Whether an execution and the movement behind it take the axes much longer than the direct way.
+fn is_detour(context: &Context<'_>, model: &Model, step: usize) -> bool {
+    let (Some((.., over)), Some((_, after))) = (context.record(step), context.neighbours(step))
+    else {
+        return false;
+    };
+    let Some((.., on)) = context.record(after) else { return false };
+    let direct = axis_time(model, &over.start, &on.end);
+    let round = axis_time(model, &over.start, &over.end) + axis_time(model, &over.end, &on.end);
+    direct >= MIN_DIRECT_S && round >= MIN_DETOUR * direct
+}
+
+/// The time that the slowest axis needs at its largest speed, s.
+fn axis_time(model: &Model, from: &Joints, to: &Joints) -> f64 {
+    let speeds = model.limits.velocity.iter().flatten();
+    let times =
+        from.iter().zip(to).zip(speeds).map(|((from, to), speed)| (to - from).abs() / speed);
+    times.fold(0.0, f64::max)
+}
