@@ -1,6 +1,6 @@
 //! Runs all rules on all programs.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use rayon::prelude::*;
@@ -15,46 +15,16 @@ use super::offer::offer_fixes;
 use super::parsed::{ParsedFile, program, programs, read};
 use super::ranking::severity;
 use super::register::ALL;
+use super::report::Report;
 use super::rule::{CycleFigures, Finding};
 use super::rules::unused_suppression;
 use super::runs;
 use super::stored::{Reports, Store};
 use super::weighing::state_needs;
 use crate::arm::robot::Model;
-use crate::rapid::syntax::SyntaxError;
 use crate::rapid::text::Span;
 
 pub use super::parsed::ReadCache;
-
-/// The result of a lint run.
-#[derive(Debug, Default)]
-pub struct Report {
-    /// In file order.
-    pub findings: Vec<Finding>,
-    /// Energy of the simulated cycles, J; `None` without any, or without dynamics.
-    pub cycle_energy_j: Option<f64>,
-    /// Number of unresolved places.
-    pub unresolved: usize,
-    /// How many movements are simulated, and why others are not.
-    pub coverage: Coverage,
-    /// The files with syntax errors by number, in file order. Filled by [`lint`] only.
-    pub syntax_errors: Vec<(usize, Vec<SyntaxError>)>,
-}
-
-impl Report {
-    /// Sum of the savings, J. Findings at one place are alternatives: only the largest counts.
-    #[must_use]
-    pub fn saving_j(&self) -> f64 {
-        let mut best: BTreeMap<_, f64> = BTreeMap::new();
-        for finding in &self.findings {
-            if let Some(saving) = &finding.saving {
-                let most = best.entry(finding.span).or_insert(0.0);
-                *most = most.max(saving.energy_j);
-            }
-        }
-        best.values().fold(0.0, |sum, saving| sum + saving)
-    }
-}
 
 /// A report with the simulated cycle of each program, in program order; `None` without a robot or
 /// an entry.

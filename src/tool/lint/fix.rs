@@ -1,11 +1,12 @@
 //! Applies fixes, and withdraws those that do not save energy.
 
-use super::engine::{Examined, Report, cycles, examine, lint};
+use super::engine::{Examined, cycles, examine, lint};
 use super::evaluate::Cycle;
 use super::job::Job;
 use super::known::Known;
 use super::offer::{Places, ROUNDING};
 use super::process::{Kept, same_order, same_process};
+use super::report::Report;
 use super::rule::{Applicability, Family, Finding};
 use crate::rapid::syntax;
 use crate::rapid::text::{Edit, SourceFile};

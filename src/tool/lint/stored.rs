@@ -3,10 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::coverage::Coverage;
-use super::engine::Report;
 use super::group::Group;
 use super::job::Job;
 use super::register;
+use super::report::Report;
 use super::rule::{Applicability, Confidence, CycleFigures, Finding, Fix};
 use super::saving::Saving;
 use crate::rapid::diagnostics::Severity;

@@ -1,7 +1,7 @@
 //! The robot goes far round over a point where nothing happens.
 //!
 //! ## What it does
-//! Finds joint movements over a point behind which the next joint movement leads back: the way over the
+//! Finds fly-by points of joint movements behind which the next joint movement leads back: the way over the
 //! point takes the axes half as long again as the direct one, or more.
 //!
 //! ## Why it wastes energy
@@ -28,12 +28,14 @@
 //! way saves a part of it.
 //!
 //! ## Assumptions
-//! Points where all executions come from one side and go on to the same movement. Points next to work or in
-//! a process, ways below 500 mm/s, and loops that end where they begin (EW402, EW403) are left alone. The
-//! confidence is low.
+//! A robot that only passes a point has nothing to do there. Points next to work or in a process, ways below
+//! 500 mm/s, and points of loops that end where they begin (EW402, EW403) are left alone. The confidence is low.
+
+use std::iter::successors;
 
 use super::super::context::Context;
 use super::super::rule::Finding;
+use super::move_to_same_place::same_goal;
 use super::there_and_back::only_next;
 use crate::arm::robot::Model;
 use crate::rapid::builtins::MoveForm;
@@ -48,6 +50,8 @@ const MIN_DETOUR: f64 = 1.5;
 const MIN_DIRECT_S: f64 = 0.1;
 /// Slower movements are taken for a process, m/s: as in EW402.
 const MIN_SPEED: f64 = 0.5;
+/// Movements to both sides among which a loop is looked for.
+const MAX_POINTS: usize = 6;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     let Some(model) = context.model else { return };
@@ -64,7 +68,9 @@ fn detour(context: &Context<'_>, model: &Model, via: usize) -> Option<Finding> {
     let site = &context.sites[via];
     if !joint(via)
         || !joint(next)
+        || site.is_stop()
         || site.executions.is_empty()
+        || is_in_loop(context, via)
         || context.is_next_to_work(via)
         || context.is_in_process(via)
         || !context.has_process(&[via, next])
@@ -80,6 +86,18 @@ fn detour(context: &Context<'_>, model: &Model, via: usize) -> Option<Finding> {
         .with_assumption("the direct way is free")
         .doubtful();
     Some(finding)
+}
+
+/// Whether a movement up to this one goes where one behind it goes.
+fn is_in_loop(context: &Context<'_>, via: usize) -> bool {
+    let previous = |site: &usize| match context.before(*site) {
+        [before] if only_next(context, *before) == Some(*site) => Some(*before),
+        _ => None,
+    };
+    let mut before = successors(Some(via), previous).take(MAX_POINTS);
+    let behind = successors(Some(via), |site| only_next(context, *site)).skip(1).take(MAX_POINTS);
+    let behind: Vec<usize> = behind.collect();
+    before.any(|one| behind.iter().any(|other| same_goal(context, one, *other)))
 }
 
 /// Whether an execution and the movement behind it take the axes much longer than the direct way.
