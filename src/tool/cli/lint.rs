@@ -148,7 +148,7 @@ pub(super) fn run(args: &LintArgs) -> anyhow::Result<ExitCode> {
         }
         report
     } else {
-        lint_again(args, &setup.programs)?
+        lint_again(args, &setup.programs)
     };
     note_syntax_errors(args, &setup.programs.files, &report);
     if let Some(path) = &args.write_baseline {
@@ -164,12 +164,14 @@ pub(super) fn run(args: &LintArgs) -> anyhow::Result<ExitCode> {
 }
 
 /// The report of all programs, with a cache only of the changed ones.
-fn lint_again(args: &LintArgs, programs: &Programs) -> anyhow::Result<Report> {
+fn lint_again(args: &LintArgs, programs: &Programs) -> Report {
     let job = programs.job();
-    Ok(match &args.cache {
-        Some(folder) => lint::lint_changed(&job, &Cache::open(folder)?),
-        None => lint::lint(&job),
-    })
+    match args.cache.as_deref().map(Cache::open) {
+        Some(Ok(cache)) => return lint::lint_changed(&job, &cache),
+        Some(Err(error)) => note(args.cell.quiet, &format!("{error:#}: there is no cache")),
+        None => {}
+    }
+    lint::lint(&job)
 }
 
 /// What cannot be read is not linted: the first error of each file is shown.

@@ -46,14 +46,14 @@ impl<'j> Reports<'j> {
         let motion = group.system.as_ref().map(|system| (system.io.is_some(), &system.motion));
         let name = hex(&key(&(&self.common, &group.entry, paths)));
         let of = hex(&key(&(bytes, motion)));
-        let kept = self.store.read(&name).and_then(|text| serde_json::from_str(&text).ok());
-        let kept = kept.filter(|kept: &Stored| kept.of == of);
+        let kept = self.store.read(&name).and_then(|text| Stored::read(&text));
+        let kept = kept.filter(|kept| kept.of == of);
         if let Some(report) = kept.and_then(|kept| kept.report(&files)) {
             return report;
         }
         let report = lint();
         let stored = Stored::new(of, &report, &files);
-        if let Some(text) = stored.and_then(|stored| serde_json::to_string(&stored).ok()) {
+        if let Some(text) = stored.and_then(|stored| stored.text()) {
             self.store.write(&name, &text);
         }
         report
@@ -116,6 +116,19 @@ struct StoredFinding {
 const SEVERITIES: [Severity; 3] = [Severity::Info, Severity::Warning, Severity::Error];
 
 impl Stored {
+    /// The report as a text, with the key of the text before it: a damaged one is noticed.
+    fn text(&self) -> Option<String> {
+        let text = serde_json::to_string(self).ok()?;
+        Some(format!("{}\n{text}", hex(&key(&text))))
+    }
+
+    /// `None` if the text is damaged.
+    fn read(text: &str) -> Option<Stored> {
+        let (sum, text) = text.split_once('\n')?;
+        let whole = sum == hex(&key(&text));
+        whole.then(|| serde_json::from_str(text).ok())?
+    }
+
     /// `None` if a span is in none of the files.
     fn new(of: String, report: &Report, files: &[usize]) -> Option<Stored> {
         let place = |span: Span| {

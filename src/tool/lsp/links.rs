@@ -26,11 +26,15 @@ pub(super) fn document_links(view: View<'_>) -> Vec<DocumentLink> {
     strings.filter_map(link).collect()
 }
 
-/// The only file with the name at the end of a path of the controller.
+/// The only file with the name at the end of a path of the controller, or else with the whole path.
 fn file_named(view: View<'_>, path: &str) -> Option<FileId> {
     let name = |path: &str| path.rsplit(['/', '\\', ':']).next().unwrap_or(path).to_lowercase();
     let wanted = name(path);
     let modules = view.project.modules.iter().map(|module| &module.file);
-    let mut found = modules.filter(|file| name(&file.path) == wanted).map(|file| file.id);
-    found.next().filter(|_| found.next().is_none())
+    let mut found: Vec<_> = modules.filter(|file| name(&file.path) == wanted).collect();
+    if found.len() > 1 {
+        let end = path.replace('\\', "/").replace(":/", "/").replace(':', "/").to_lowercase();
+        found.retain(|file| file.path.to_lowercase().ends_with(&end));
+    }
+    if let [file] = found[..] { Some(file.id) } else { None }
 }

@@ -100,6 +100,15 @@ fn takes_no_time(
         StmtKind::Assign { target, value } => {
             is_calculated(value) && !target.base().is_some_and(ends_loop)
         }
+        // As where a time runs out.
+        StmtKind::If { branches, otherwise } => {
+            let takes_none = |stmt: &Stmt| {
+                matches!(stmt.kind, StmtKind::Return(_) | StmtKind::Raise(_) | StmtKind::Goto(_))
+                    || takes_no_time(context, routine, stmt, ends_loop)
+            };
+            branches.iter().all(|(it, body)| is_calculated(it) && body.iter().all(takes_none))
+                && otherwise.iter().flatten().all(takes_none)
+        }
         _ => false,
     }
 }

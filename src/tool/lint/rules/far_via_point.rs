@@ -28,8 +28,9 @@
 //! way saves a part of it.
 //!
 //! ## Assumptions
-//! A robot that only passes a point has nothing to do there. Points next to work or in a process, ways below
-//! 500 mm/s, and points of loops that end where they begin (EW402, EW403) are left alone. The confidence is low.
+//! A robot that only passes a point has nothing to do there. Points above both ends of the way, or nearer to
+//! the robot than both, lead round things and are left alone. So are points next to work or in a process, ways
+//! below 500 mm/s, and loops that end where they begin (EW402, EW403). The confidence is low.
 
 use std::iter::successors;
 
@@ -46,8 +47,8 @@ rule!("EW407", "far-via-point", Path, Robot, Info, "far_via_point.rs");
 /// Least time of the axes over the point, as a multiple of that of the direct way: a point half as far to the
 /// side as the way is long has 1.4, which leads round things.
 const MIN_DETOUR: f64 = 1.5;
-/// Shortest direct way, s of the slowest axis: shorter ones are loops.
-const MIN_DIRECT_S: f64 = 0.1;
+/// Height, and distance to the axis of the robot, by which a point leads round things, m.
+const CLEARANCE: f64 = 0.05;
 /// Slower movements are taken for a process, m/s: as in EW402.
 const MIN_SPEED: f64 = 0.5;
 /// Movements to both sides among which a loop is looked for.
@@ -109,7 +110,21 @@ fn is_detour(context: &Context<'_>, model: &Model, step: usize) -> bool {
     let Some((.., on)) = context.record(after) else { return false };
     let direct = axis_time(model, &over.start, &on.end);
     let round = axis_time(model, &over.start, &over.end) + axis_time(model, &over.end, &on.end);
-    direct >= MIN_DIRECT_S && round >= MIN_DETOUR * direct
+    round >= MIN_DETOUR * direct && !leads_round(context, step, after)
+}
+
+/// Whether the point of an execution is above both ends of the way, or nearer to the robot; so if one of them
+/// is unknown.
+fn leads_round(context: &Context<'_>, step: usize, after: usize) -> bool {
+    let place = |step: usize| {
+        let at = context.pose(step)?.translation.vector;
+        Some((at.z, at.x.hypot(at.y)))
+    };
+    let before = context.neighbours(step).and_then(|(before, _)| place(before));
+    let (Some(from), Some(over), Some(on)) = (before, place(step), place(after)) else {
+        return true;
+    };
+    over.0 > from.0.max(on.0) + CLEARANCE || over.1 < from.1.min(on.1) - CLEARANCE
 }
 
 /// The time that the slowest axis needs at its largest speed, s.

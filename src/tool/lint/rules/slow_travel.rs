@@ -93,8 +93,14 @@ fn travels(context: &Context<'_>, index: usize) -> bool {
     };
     let short_is_free =
         !site.is_linear() && !context.is_next_to_work(index) && !context.is_process(index);
+    // Where the robot comes from is not known: neither are the joules, nor what is on the way.
+    let starts = |step: &usize| {
+        let before = context.trace[..*step].iter().rfind(|done| done.what.moves());
+        before.is_none_or(|done| done.what.movement().is_none())
+    };
     site.is_plain()
         && site.signature.form != MoveForm::Circular
+        && !site.executions.iter().any(starts)
         && site.executions.iter().any(is_limited)
         && context.always(index, full)
         && free

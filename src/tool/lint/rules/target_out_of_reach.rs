@@ -33,7 +33,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::context::Context;
 use super::super::rule::Finding;
-use super::super::trace::{Action, record};
+use super::super::runs::recording;
+use super::super::trace::Action;
 use crate::arm::kinematics::{IkError, ik_near, limits_ok};
 use crate::arm::robot::Model;
 use crate::rapid::ir::movement::{Movement, Target};
@@ -45,7 +46,7 @@ rule!("EW705", "target-out-of-reach", Program, Robot, Warning, "target_out_of_re
 const MIN_MOVES_PER_FAILURE: usize = 4;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
-    let (Some(model), Some(entry)) = (context.model, context.entry) else { return };
+    let Some(model) = context.model else { return };
     let mut moves: BTreeSet<Span> = BTreeSet::new();
     let mut left: BTreeSet<Span> = BTreeSet::new();
     for done in &context.trace {
@@ -58,7 +59,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     if left.is_empty() || left.len() * MIN_MOVES_PER_FAILURE > moves.union(&left).count() {
         return;
     }
-    let recording = record(context.program, entry);
+    let recording = recording(context.program, context.entry);
     let mut reasons: BTreeMap<Span, Option<String>> = BTreeMap::new();
     for done in recording.trace() {
         let Some(movement) = done.what.movement() else { continue };

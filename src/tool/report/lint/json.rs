@@ -44,6 +44,13 @@ fn finding(finding: &Finding, files: &[SourceFile]) -> Value {
             .collect();
         json!({ "applicability": fix.applicability.name(), "edits": edits })
     });
+    let related: Vec<Value> = (finding.related.iter())
+        .map(|(span, message)| {
+            let file = &files[span.file.0 as usize];
+            let line = file.position(span.start).line;
+            json!({ "file": file.path, "line": line, "message": message })
+        })
+        .collect();
     json!({
         "code": finding.rule.code,
         "name": finding.rule.name,
@@ -61,6 +68,7 @@ fn finding(finding: &Finding, files: &[SourceFile]) -> Value {
         "saving_interval_j": saving.map(|s| [s.low_j, s.high_j]),
         "per": if saving.is_some() { "cycle" } else { "execution" },
         "at_stake_j": finding.at_stake_j,
+        "related": related,
         "needs": finding.needs,
         "confidence": finding.confidence.name(),
         "places": finding.count,

@@ -71,6 +71,15 @@ fn result(finding: &Finding, fingerprint: &str, files: &[SourceFile]) -> Value {
             "per": "cycle",
         });
     }
+    let related: Vec<Value> = (finding.related.iter())
+        .map(|(span, text)| {
+            let place = place(&files[span.file.0 as usize], *span);
+            json!({ "physicalLocation": place, "message": { "text": text } })
+        })
+        .collect();
+    if !related.is_empty() {
+        result["relatedLocations"] = json!(related);
+    }
     if let Some(fix) = &finding.fix {
         let changes: Vec<Value> = fix
             .edits
