@@ -66,14 +66,14 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         if before.iter().all(|before| text(*before) == text(index)) {
             repeated.entry(site.stmt.span.file).or_default().push(index);
         } else {
-            findings.extend(same_place(context, &[index]));
+            findings.push(same_place(context, &[index]));
         }
     }
-    findings.extend(repeated.into_values().filter_map(|sites| same_place(context, &sites)));
+    findings.extend(repeated.into_values().map(|sites| same_place(context, &sites)));
 }
 
-/// A finding at the first of some movements, for all of them; none if nothing changes without them.
-fn same_place(context: &Context<'_>, sites: &[usize]) -> Option<Finding> {
+/// A finding at the first of some movements, for all of them.
+fn same_place(context: &Context<'_>, sites: &[usize]) -> Finding {
     let spans: Vec<Span> = sites.iter().map(|site| context.sites[*site].stmt.span).collect();
     let site = &context.sites[sites[0]];
     let (what, change) = match sites.len() {
@@ -92,12 +92,12 @@ fn same_place(context: &Context<'_>, sites: &[usize]) -> Option<Finding> {
     for span in spans.iter().skip(1).take(MAX_RELATED) {
         finding = finding.with_related(*span, "and here");
     }
-    if let Some(saving) = context.evaluate(&spans, &|_| Vec::new()).ok()? {
+    if let Ok(Some(saving)) = context.evaluate(&spans, &|_| Vec::new()) {
         finding = finding.with_saving(change, saving);
     }
     let edits: Option<Vec<Edit>> =
         sites.iter().map(|site| remove(context, &context.sites[*site])).collect();
-    Some(finding.with_unsafe_fix(edits.unwrap_or_default()))
+    finding.with_unsafe_fix(edits.unwrap_or_default())
 }
 
 /// Whether two plain movements go to the same place with the same tool and work object.
