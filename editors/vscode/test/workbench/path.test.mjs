@@ -50,7 +50,10 @@ test("the command in the folder of the platform serves the editor", async () => 
   await mkdir(folder, { recursive: true });
   await symlink(BINARY, join(folder, "joulepath"));
   await workbench.run("joulepath: restart the server");
+  // The other modules of the fixture have no findings.
+  await workbench.openFile("Machine.mod");
   await workbench.page.waitForSelector(".squiggly-warning, .squiggly-info, .squiggly-hint", { timeout: 30_000 });
+  await workbench.openFile("PickPlace.mod");
 });
 
 test("the path is drawn beside the text, with the cycle that the command reports", async () => {
