@@ -294,7 +294,8 @@ fn parts_of_several_lines_can_be_folded() {
 fn strings_that_name_a_module_are_links() {
     let main = "MODULE Main\nPROC main()\nLoad \\Dynamic,\"HOME:/parts/PART.mod\";\n\
                 TPWrite \"Part\";\nLoad \\Dynamic,\"HOME:\"\\File:=\"Gone.mod\";\nENDPROC\nENDMODULE\n";
-    let files = [("Main.mod", main), ("parts/Part.mod", "MODULE Part\nENDMODULE\n")];
+    let part = "MODULE Part\nENDMODULE\n";
+    let files = [("Main.mod", main), ("parts/Part.mod", part)];
     let mut client = Client::start(Memory::new(&files), &json!({}));
     let links = client.about("documentLink", "Main.mod");
     let links = links.as_array().unwrap();
@@ -305,4 +306,13 @@ fn strings_that_name_a_module_are_links() {
         (start, end),
         (&json!({ "line": 2, "character": 15 }), &json!({ "line": 2, "character": 35 }))
     );
+
+    // Of two files with the name, the path tells which is meant.
+    let main = "MODULE Main\nPROC main()\nLoad \\Dynamic,\"HOME:/b/Part.mod\";\n\
+                Load \\Dynamic,\"HOME:\"\\File:=\"Part.mod\";\nENDPROC\nENDMODULE\n";
+    let files = [("Main.mod", main), ("a/Part.mod", part), ("b/Part.mod", part)];
+    let mut client = Client::start(Memory::new(&files), &json!({}));
+    let links = client.about("documentLink", "Main.mod");
+    let found: Vec<_> = links.as_array().unwrap().iter().map(|it| name(&it["target"])).collect();
+    assert_eq!(found, ["b/Part.mod"]);
 }

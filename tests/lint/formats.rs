@@ -39,6 +39,8 @@ fn json_has_the_fields_of_the_contract() {
         "confidence",
         "places",
         "at_stake_j",
+        "related",
+        "needs",
     ] {
         assert!(finding.get(key).is_some(), "{key}");
     }
@@ -106,16 +108,23 @@ fn sarif_output_is_valid_by_the_official_schema() {
     let schema = schema_of_sarif();
     assert!(schema["$id"].as_str().unwrap().ends_with("sarif-schema-2.1.0.json"));
     assert_known(&schema);
-    let mut results = 0;
+    let (mut results, mut related) = (0, 0);
     for fixture in fixtures() {
-        let value = sarif::sarif(&fixture.report(), &fixture.files);
+        let report = fixture.report();
+        let value = sarif::sarif(&report, &fixture.files);
         assert_eq!(errors(&schema, &value), [""; 0], "{:?}", fixture.path);
         // Types generated from the schema read it without loss.
         let read: serde_sarif::sarif::Sarif = serde_json::from_value(value.clone()).unwrap();
         assert_eq!(serde_json::to_value(&read).unwrap(), value);
-        results += value["runs"][0]["results"].as_array().unwrap().len();
+        let found = value["runs"][0]["results"].as_array().unwrap();
+        for (finding, result) in report.findings.iter().zip(found) {
+            let places = result["relatedLocations"].as_array().map_or(0, Vec::len);
+            assert_eq!(places, finding.related.len());
+            related += places;
+        }
+        results += found.len();
     }
-    assert!(results > 30, "{results}");
+    assert!(results > 30 && related > 10, "{results} {related}");
     // The check detects errors.
     let all = fixtures();
     let mut value = sarif::sarif(&all[0].report(), &all[0].files);

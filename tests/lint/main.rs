@@ -22,7 +22,9 @@ use joulepath::rapid::diagnostics::Severity;
 use joulepath::rapid::text::{FileId, SourceFile};
 use joulepath::retime::motion::Options;
 use joulepath::tool::lint::ranking::{joules, top};
-use joulepath::tool::lint::{ALL, Confidence, Finding, Group, Job, Needs, Report, Settings, lint};
+use joulepath::tool::lint::{
+    ALL, Confidence, Family, Finding, Group, Job, Needs, Report, Settings, lint,
+};
 
 /// A program with the settings in its first comments.
 pub(crate) struct Fixture {
@@ -355,6 +357,36 @@ fn procedures_of_a_menu_are_simulated_by_themselves() {
     // A procedure that a complete program does not call is none of its cycle.
     let whole = Fixture::new("M.mod".into(), &program("PROC main() rTwo; ENDPROC")).report();
     assert_eq!(whole.coverage.simulated, 2);
+}
+
+/// A finding without joules says what would tell them; one with joules needs nothing.
+#[test]
+fn findings_without_joules_say_what_they_need() {
+    let text = "MODULE M
+        ! robot: IRB1600-10/1.45
+        PERS tooldata tGrip:=[TRUE,[[0,0,120],[1,0,0,0]],[-1,[0,0,0],[1,0,0,0],0,0,0]];
+        PERS tooldata tArm:=[TRUE,[[0,0,120],[1,0,0,0]],[1.8,[0,0,52],[1,0,0,0],0.004,0.004,0.002]];
+        CONST jointtarget jHome:=[[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+        CONST jointtarget jOut:=[[40,20,10,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+        PROC main()
+            MoveAbsJ jHome,v1000,fine,tArm;
+            MoveAbsJ jOut,v1000,z1,tArm;
+            MoveAbsJ jHome,v1000,fine,tGrip;
+            IF diOther=1 THEN
+                MoveAbsJ jOut,v1000,z1,tArm;
+                MoveAbsJ jHome,v1000,fine,tArm;
+            ENDIF
+            WaitTime 1;
+        ENDPROC
+    ENDMODULE";
+    let findings = Fixture::new("M.mod".into(), text).report().findings;
+    let needs = |family: Family| {
+        let own = findings.iter().filter(move |it| it.rule.family == family);
+        own.filter_map(|it| it.needs.as_deref()).collect::<Vec<_>>()
+    };
+    assert!(needs(Family::Load).iter().any(|it| it.contains("LoadIdentify")), "{findings:?}");
+    assert!(needs(Family::Stops).iter().any(|it| it.contains("--input")), "{findings:?}");
+    assert!(findings.iter().all(|it| it.saving.is_none() || it.needs.is_none()));
 }
 
 /// The list of things to fix is by joules, the doubtful ones last.

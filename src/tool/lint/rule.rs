@@ -153,10 +153,6 @@ pub struct CycleFigures {
     pub time_s: f64,
 }
 
-/// Most further places that a finding for several places shows: enough to see what they have in
-/// common.
-pub(super) const MAX_RELATED: usize = 3;
-
 /// How sure a rule is that a finding is waste.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Confidence {

@@ -2,8 +2,9 @@
 //!
 //! ## What it does
 //! Finds `WHILE` loops whose condition reads an input or a flag and whose body does nothing that takes
-//! time (it may count or read a clock), the same loops made of a label, an `IF` and a `GOTO`, and
-//! `WHILE TRUE` loops that do something only where an input asks for it, in programs that move a robot.
+//! time (it may count, read a clock, or end when a time runs out), the same loops made of a label, an `IF`
+//! and a `GOTO`, and `WHILE TRUE` loops that do something only where an input asks for it, in programs that
+//! move a robot.
 //!
 //! ## Why it wastes energy
 //! The controller spends its time on the loop, so that other tasks, communication and the planning of

@@ -31,7 +31,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::context::Context;
-use super::super::rule::{Finding, MAX_RELATED};
+use super::super::rule::Finding;
 use super::super::site::parts;
 use crate::rapid::ir::exec::value_of;
 use crate::rapid::ir::hir::{DataKind, ExprKind};
@@ -85,8 +85,7 @@ fn duplicated(context: &Context<'_>, pairs: &[(DataId, DataId)]) -> Option<Findi
     let finding = Finding::new(&RULE, name(*second).span, message)
         .for_places(pairs.len())
         .with_related(name(*first).span, "the same value");
-    let related = others.iter().take(MAX_RELATED);
-    Some(related.fold(finding, |finding, (first, other)| {
+    Some(others.iter().fold(finding, |finding, (first, other)| {
         finding.with_related(name(*other).span, format!("the same as {}", name(*first).text))
     }))
 }

@@ -35,7 +35,7 @@
 use std::collections::BTreeMap;
 
 use super::super::context::Context;
-use super::super::rule::{Finding, MAX_RELATED};
+use super::super::rule::Finding;
 use super::super::saving::Saving;
 use super::super::trace::Action;
 use crate::arm::robot::Model;
@@ -99,7 +99,7 @@ fn fixed_wait(context: &Context<'_>, waits: &[Executed]) -> Finding {
         .with_at_stake(joules)
         .with_assumption(format!("the wait is for {signal}"))
         .for_places(waits.len());
-    let related = waits.iter().skip(1).take(MAX_RELATED);
+    let related = waits.iter().skip(1);
     related.fold(finding, |finding, (span, _)| finding.with_related(*span, "and here"))
 }
 

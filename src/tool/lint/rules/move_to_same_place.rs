@@ -35,7 +35,7 @@ use std::collections::BTreeMap;
 
 use super::super::context::Context;
 use super::super::edits::remove;
-use super::super::rule::{Finding, MAX_RELATED};
+use super::super::rule::Finding;
 use crate::rapid::ir::hir::{Arg, Expr, ExprKind};
 use crate::rapid::ir::program::Symbol;
 use crate::rapid::text::{Edit, FileId, Span};
@@ -89,7 +89,7 @@ fn same_place(context: &Context<'_>, sites: &[usize]) -> Finding {
     for before in context.before(sites[0]) {
         finding = finding.with_related(context.sites[*before].stmt.span, "it got there here");
     }
-    for span in spans.iter().skip(1).take(MAX_RELATED) {
+    for span in spans.iter().skip(1) {
         finding = finding.with_related(*span, "and here");
     }
     if let Ok(Some(saving)) = context.evaluate(&spans, &|_| Vec::new()) {

@@ -35,7 +35,7 @@
 
 use super::super::context::Context;
 use super::super::regions::percent;
-use super::super::rule::{Finding, MAX_RELATED};
+use super::super::rule::Finding;
 use crate::rapid::ir::movement::{Movement, Settings};
 
 rule!("EW601", "setting-never-restored", Settings, Text, Warning, "setting_never_restored.rs");
@@ -66,8 +66,6 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         let message = "lowered here for all that follows, and in the next cycle for all: \
                        nothing sets it back to 100 %";
         let finding = Finding::new(&RULE, first, message).for_places(calls.len());
-        let related = spans.take(MAX_RELATED);
-        findings
-            .push(related.fold(finding, |finding, span| finding.with_related(span, "and here")));
+        findings.push(spans.fold(finding, |finding, span| finding.with_related(span, "and here")));
     }
 }

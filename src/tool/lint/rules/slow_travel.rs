@@ -10,8 +10,9 @@
 //! travel spares friction and copper loss, but below some speed it spares less than the time costs.
 //!
 //! ## How the saving is computed
-//! All these movements are laid on a time line with the written speed and with each higher predefined
-//! one, as long as each step saves at least 1 J more; the best one is proposed.
+//! Two of these movements are laid on a time line with each higher predefined speed, as long as each step
+//! saves at least 1 J more by what these two stand for; the best one is proposed. Its saving is that of all
+//! these movements with the written speed and with this one.
 //!
 //! ## Example
 //! ```text
@@ -35,7 +36,7 @@
 //! alone. Lines next to work (an output, a wait, another tool or load) or next to a movement slower than
 //! 200 mm/s, lines along the tool's axis, lines of less than 150 mm and lines next to such a one across the axis
 //! are ways into or out of it, or contours, and keep their speed. So do joint movements of less than 150 mm
-//! that are next to work or slower than 200 mm/s.
+//! that are next to work or slower than 200 mm/s, and movements from an unknown place, such as the first one.
 
 use std::collections::BTreeMap;
 
@@ -43,7 +44,7 @@ use nalgebra::Vector3;
 
 use super::super::context::Context;
 use super::super::edits::{faster, replace, with_predefined_speed};
-use super::super::rule::{Finding, MAX_RELATED};
+use super::super::rule::Finding;
 use super::super::settings::THRESHOLD_J;
 use crate::rapid::builtins::MoveForm;
 use crate::rapid::ir::movement::Settings;
@@ -58,8 +59,7 @@ rule!("EW206", "slow-travel", Speed, Robot, Info, "slow_travel.rs");
 const MIN_WAY: f64 = 0.15;
 /// Largest cosine between the tool's axis and a way across it: tools may lean by 30°.
 const MAX_ACROSS: f64 = 0.5;
-/// Statements on which the best speed is looked for: it differs little between the ways of a procedure, and
-/// the saving is simulated for all of them.
+/// Statements on which the best speed is looked for, to save time; the saving is simulated for all of them.
 const SAMPLE: usize = 2;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
@@ -171,7 +171,7 @@ fn faster_travel(context: &Context<'_>, indices: &[usize]) -> Option<Finding> {
         .with_saving(format!("{name} in place of {written}{count}"), saving)
         .for_places(sites.len())
         .with_assumption("no part, hose or person needs the lower speed");
-    for span in spans.iter().skip(1).take(MAX_RELATED) {
+    for span in spans.iter().skip(1) {
         finding = finding.with_related(*span, "and here");
     }
     // Faster with a part, or where the speed is that of a process, only who knows the cell can say.

@@ -2,7 +2,7 @@
 //!
 //! ## What it does
 //! Finds movements whose target the robot has no joint angles for, whatever the configuration, in
-//! programs most of whose movements it can make.
+//! programs most of whose movements it can make; in procedures that start by themselves, too.
 //!
 //! ## Why it wastes energy
 //! The robot stops there with an error, and stands with its drives on until somebody comes; no

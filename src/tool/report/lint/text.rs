@@ -8,6 +8,9 @@ use crate::rapid::text::SourceFile;
 use crate::tool::lint::{Applicability, Finding, Report};
 use crate::tool::report::table::{Align, table};
 
+/// Most further places that a text shows: enough to see what they have in common. JSON and SARIF have all.
+const SHOWN: usize = 4;
+
 /// Each finding with its source, separated by empty lines.
 #[must_use]
 pub fn full(report: &Report, files: &[SourceFile], paint: Paint) -> String {
@@ -33,7 +36,7 @@ fn diagnostic(finding: &Finding) -> Diagnostic {
     diagnostic.severity = finding.severity;
     diagnostic.code = Some(finding.rule.code.to_owned());
     diagnostic.label = Some(finding.rule.name.to_owned());
-    let related = finding.related.iter();
+    let related = finding.related.iter().take(SHOWN);
     diagnostic
         .labels
         .extend(related.map(|(span, message)| Label { span: *span, message: message.clone() }));
