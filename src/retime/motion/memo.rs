@@ -30,7 +30,7 @@ impl<V: Clone> Memo<V> {
         // The lock is free while the result is computed.
         let value = found.unwrap_or_else(compute);
         let mut kept = kept();
-        if kept[0].len() >= self.most {
+        if kept[0].len() >= self.most && !kept[0].contains_key(&key) {
             kept.swap(0, 1);
             kept[0].clear();
         }
