@@ -357,6 +357,21 @@ fn procedures_of_a_menu_are_simulated_by_themselves() {
     // A procedure that a complete program does not call is none of its cycle.
     let whole = Fixture::new("M.mod".into(), &program("PROC main() rTwo; ENDPROC")).report();
     assert_eq!(whole.coverage.simulated, 2);
+    // Neither is one that it calls after an error or at an interrupt.
+    let main = "VAR intnum nStop;
+        PROC main()
+            CONNECT nStop WITH tStop;
+            rTwo;
+        ERROR
+            rAway;
+            RETRY;
+        ENDPROC
+        TRAP tStop
+            rOne;
+        ENDTRAP";
+    let failing = Fixture::new("M.mod".into(), &program(main)).report();
+    assert_eq!(failing.coverage.simulated, 2, "{:?}", failing.coverage.missing);
+    assert_eq!(failing.cycle_energy_j, whole.cycle_energy_j);
 }
 
 /// A finding without joules says what would tell them; one with joules needs nothing.

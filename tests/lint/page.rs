@@ -41,8 +41,9 @@ to\" marks what a fixed wait takes: how much of it can be saved only the cell kn
 
 **What is simulated**: the entry of the program; where it is missing or moves nothing, each procedure with
 movements that no other one calls; and where it is a menu, each procedure that it may call and that the
-simulated run did not come by. A cycle is then one run of each of them. Where not all movements are
-simulated, the last line says how many are, and why the others are not.
+simulated run did not come by. A cycle is then one run of each of them; what runs only after errors and at
+interrupts is no part of it. Where not all movements are simulated, the last line says how many are, and why
+the others are not.
 
 **Comments** take findings back: `! joulepath: ignore EW101 reason`, at the end of the statement's
 first line or on a line of its own above it.

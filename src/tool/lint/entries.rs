@@ -12,7 +12,8 @@ use crate::rapid::text::Span;
 
 /// The procedures that can start a program.
 pub(super) struct Entries {
-    /// The procedures that the entry may call; `None` where that is not known.
+    /// The procedures that the entry may call in a cycle without errors and interrupts; `None` where that is not
+    /// known.
     called: Option<BTreeSet<RoutineId>>,
     /// The procedures without required parameters, with the routines and the movements that they reach.
     starts: BTreeMap<RoutineId, (BTreeSet<RoutineId>, BTreeSet<Span>)>,
@@ -29,7 +30,8 @@ impl Entries {
             let own = own.map(|(_, span)| *span).collect();
             (id, (reached, own))
         });
-        let called = entry.filter(|_| !flow.has_late_calls()).map(|entry| flow.running([entry]));
+        let called =
+            entry.filter(|_| !flow.has_late_calls()).map(|entry| flow.running_normally(entry));
         Entries { called, starts: starts.collect() }
     }
 

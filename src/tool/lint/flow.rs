@@ -289,6 +289,21 @@ impl<'p> Flow<'p> {
         found
     }
 
+    /// Routines that a routine reaches where nothing fails and no interrupt comes.
+    pub fn running_normally(&self, from: RoutineId) -> BTreeSet<RoutineId> {
+        let mut found = BTreeSet::new();
+        let mut search = Search { open: vec![(from, 0)], ..Search::default() };
+        while let Some(place) = search.next() {
+            found.insert(place.0);
+            let called = self.statement(place).map(|stmt| self.class(place.0, stmt));
+            if let Some(Class::Call(callee)) = called {
+                search.open.push((callee, 0));
+            }
+            self.push_next(place, &mut search.open);
+        }
+        found
+    }
+
     /// Whether a routine is the entry.
     pub fn is_entry(&self, routine: RoutineId) -> bool {
         self.entry == Some(routine)
