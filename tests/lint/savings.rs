@@ -88,6 +88,12 @@ fn manual_change(fixture: &Fixture, finding: &Finding) -> Vec<Edit> {
     if change == "leaving out this movement and the one before" {
         return vec![edit(Span { start: movements_before(1), ..span }, String::new())];
     }
+    if change == "leaving out this movement and the next one" {
+        let behind = String::from_utf8(file.bytes[span.end as usize..].to_vec()).unwrap();
+        let next = behind.find("Move").unwrap();
+        let length = next + behind[next..].find(';').unwrap() + 1;
+        return vec![edit(Span { end: span.end + length as u32, ..span }, String::new())];
+    }
     if let Some(rest) = change.strip_prefix("leaving out the ") {
         let count: usize = rest.split(' ').next().unwrap().parse().unwrap();
         let whole = Span { start: movements_before(count), end: span.start, ..span };

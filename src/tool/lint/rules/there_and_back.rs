@@ -8,7 +8,8 @@
 //! The way there and back is for nothing.
 //!
 //! ## How the saving is computed
-//! The cycle is laid on a time line without the first two of the three movements.
+//! The cycle is laid on a time line without the first two of the three movements; without the last two where
+//! the first one is next to work.
 //!
 //! ## Example
 //! ```text
@@ -68,14 +69,19 @@ fn back_to(context: &Context<'_>, first: usize) -> Option<Finding> {
     if !idle(there) || !idle(back) || again || shaken || !process {
         return None;
     }
-    // Without both, the last movement goes the way of the first one.
     let same_form = context.sites[first].signature.form == context.sites[back].signature.form;
     let free = |site: usize| !context.is_next_to_work(site) && !context.is_in_process(site);
-    if !same_form || !free(first) || !free(there) {
-        return None;
-    }
     let [a, b, c] = [first, there, back].map(|site| &context.sites[site]);
-    let saving = context.evaluate(&[a.stmt.span, b.stmt.span], &|_| Vec::new()).ok()?;
+    let (needless, change) = if same_form && free(first) && free(there) {
+        // The last movement goes the way of the first one.
+        ([a, b], "leaving out this movement and the one before")
+    } else if free(there) && free(back) {
+        ([b, c], "leaving out this movement and the next one")
+    } else {
+        return None;
+    };
+    let spans = needless.map(|site| site.stmt.span);
+    let saving = context.evaluate(&spans, &|_| Vec::new()).ok()?;
     if saving.is_some_and(|saving| saving.time_s < 0.0) {
         return None;
     }
@@ -83,7 +89,7 @@ fn back_to(context: &Context<'_>, first: usize) -> Option<Finding> {
     let finding = Finding::new(&RULE, b.stmt.span, message)
         .with_related(a.stmt.span, "from here")
         .with_related(c.stmt.span, "back again")
-        .with_saving("leaving out this movement and the one before", saving)
+        .with_saving(change, saving)
         .doubtful();
     Some(finding)
 }

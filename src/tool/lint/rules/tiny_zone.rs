@@ -29,8 +29,8 @@
 //! Unsafe: the corner is cut further. Check that there is room.
 //!
 //! ## Assumptions
-//! Movements below 500 mm/s, next to work or in a process, corners between two lines and points at
-//! which the tool turns back are left alone.
+//! Movements below 500 mm/s, next to work or in a process, corners between two lines, points at which the
+//! tool turns back and ways below 50 mm are left alone.
 
 use super::super::context::Context;
 use super::super::edits::zone_within;
@@ -49,7 +49,7 @@ const MIN_SPEED: f64 = 0.5;
 /// A larger change of direction is a way back, rad.
 const MAX_TURN: f64 = 2.36;
 /// Least room, m.
-const MIN_ROOM: f64 = 0.1;
+const MIN_ROOM: f64 = 0.05;
 /// Share of the room that is proposed.
 const SHARE: f64 = 0.3;
 /// Largest zone that is proposed, m.
