@@ -26,7 +26,8 @@
 //! ```
 //!
 //! ## Safety
-//! Unsafe: the way between the points is another one. Check that it is free.
+//! Unsafe: the way between the points is another one. Check that it is free. With a part there is no fix, and
+//! the confidence is low.
 //!
 //! ## Assumptions
 //! There is room between the two points; ways below 200 mm and speeds below 500 mm/s are left
@@ -76,8 +77,12 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         let message = format!("{} keeps a line between two points that are only passed", site.name);
         let finding = Finding::new(&RULE, site.stmt.span, message)
             .with_saving(format!("MoveJ in place of {}", site.name), saving)
-            .with_assumption("the way of a joint movement is free")
-            .with_unsafe_fix([replace(site.name_span, "MoveJ")]);
-        findings.push(finding);
+            .with_assumption("the way of a joint movement is free");
+        // A part takes more room beside the line than the tool.
+        findings.push(if context.carries_part(index) {
+            finding.doubtful()
+        } else {
+            finding.with_unsafe_fix([replace(site.name_span, "MoveJ")])
+        });
     }
 }
