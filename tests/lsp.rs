@@ -174,6 +174,15 @@ fn an_open_document_gets_findings_hovers_and_fixes() {
 /// With an unknown robot and a missing folder the document is linted alone, without joules; a
 /// malformed request receives an error.
 #[test]
+fn options_of_a_wrong_form_are_reported() {
+    let mut client = Client::start(&json!({ "inputs": "diPart=2.5" }));
+    let message = client.read();
+    assert_eq!(message["method"], "window/showMessage", "{message}");
+    let text = message["params"]["message"].as_str().unwrap();
+    assert!(text.contains("initializationOptions") && text.contains("inputs"), "{text}");
+}
+
+#[test]
 fn a_document_is_linted_without_a_robot_and_a_folder() {
     let mut client = Client::start(&json!({ "robot": "no such robot" }));
     let uri = "file:///gone/M.mod";

@@ -383,13 +383,16 @@ fn findings_without_joules_say_what_they_need() {
         PERS tooldata tArm:=[TRUE,[[0,0,120],[1,0,0,0]],[1.8,[0,0,52],[1,0,0,0],0.004,0.004,0.002]];
         CONST jointtarget jHome:=[[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
         CONST jointtarget jOut:=[[40,20,10,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+        CONST robtarget pA:=[[900,300,600],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+        CONST robtarget pB:=[[1000,-200,600],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+        CONST robtarget pC:=[[800,-200,900],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
         PROC main()
             MoveAbsJ jHome,v1000,fine,tArm;
-            MoveAbsJ jOut,v1000,z1,tArm;
-            MoveAbsJ jHome,v1000,fine,tGrip;
+            MoveAbsJ jOut,v1000,fine,tGrip;
             IF diOther=1 THEN
-                MoveAbsJ jOut,v1000,z1,tArm;
-                MoveAbsJ jHome,v1000,fine,tArm;
+                MoveJ pA,v1000,fine,tArm;
+                MoveJ pB,v1000,z1,tArm;
+                MoveJ pC,v1000,fine,tArm;
             ENDIF
             WaitTime 1;
         ENDPROC

@@ -53,7 +53,7 @@ pub use options::Options;
 
 use std::path::PathBuf;
 
-use serde_json::{Value, from_value, json};
+use serde_json::{Value, json};
 
 use client::Client;
 use server::Server;
@@ -79,12 +79,12 @@ pub fn serve_on(
     host: impl Host,
 ) -> Result<(), LspError> {
     let (id, params) = connection.initialize_start()?;
-    let sent = params.get("initializationOptions").cloned().unwrap_or_default();
-    let options = from_value::<Options>(sent).unwrap_or_default().or(defaults);
+    let (sent, warning) = options::sent(&params);
+    let options = sent.or(defaults);
     let client = Client::new(&params);
     connection.initialize_finish(id, json!(capabilities::initialize_result(&client)))?;
     let mut server = Server::new(host, options, client, folders(&params));
-    send(&connection, server.start())?;
+    send(&connection, warning.into_iter().chain(server.start()).collect())?;
     loop {
         let next = if server.has_news() {
             server.host.until_pause(&connection)

@@ -52,7 +52,7 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
     for done in &context.trace {
         match done.what {
             Action::Move(movement) => moves.insert(movement.span),
-            Action::Left(span) => left.insert(span),
+            Action::Left(span) if context.site_of(span).is_some() => left.insert(span),
             _ => false,
         };
     }
