@@ -5,6 +5,7 @@
 //! linear system banded, so the time of an iteration is linear in the number of variables.
 
 use super::banded::{Banded, Cholesky};
+use super::row_state::{Reduction, RowChange, RowState, TO_BOUNDARY};
 
 /// min ½ xᵀ H x + gᵀ x + Σ price · (violation of a row) subject to the rows.
 pub(super) struct BandedProgram {
@@ -31,10 +32,6 @@ impl Row {
     fn value(&self, x: &[f64]) -> f64 {
         self.terms.iter().map(|(i, weight)| weight * x[*i]).sum()
     }
-
-    fn is_soft(&self) -> bool {
-        self.price.is_finite()
-    }
 }
 
 /// An optimum within the required gap.
@@ -46,20 +43,8 @@ pub(super) struct Optimum {
 
 /// Largest number of iterations; 8 to 20 are usual.
 const MAX_ITERATIONS: usize = 60;
-/// Length of a step as a share of the step to the boundary.
-const TO_BOUNDARY: f64 = 0.995;
-/// Smallest initial slack and multiplier.
-const BEGIN: f64 = 1e-2;
 /// Largest residual of the rows and of the gradient at the optimum, relative to their size.
 const RESIDUAL: f64 = 1e-7;
-
-/// Slack w ≥ 0 of a row, its violation s ≥ 0, and their multipliers λ and price − λ.
-#[derive(Clone, Copy)]
-struct State {
-    w: f64,
-    s: f64,
-    lambda: f64,
-}
 
 /// Violation of the optimality conditions.
 struct Residuals {
@@ -76,34 +61,33 @@ struct Residuals {
 /// A Newton step of x and of the state of each row.
 struct Direction {
     x: Vec<f64>,
-    states: Vec<State>,
+    states: Vec<RowChange>,
 }
 
 impl BandedProgram {
     /// The rows with their states.
-    fn rows<'a>(&'a self, states: &'a [State]) -> impl Iterator<Item = (&'a Row, &'a State)> {
+    fn rows<'a>(&'a self, states: &'a [RowState]) -> impl Iterator<Item = (&'a Row, &'a RowState)> {
         self.rows.iter().zip(states)
     }
 
     /// Solves the program to a gap relative to 1 + |objective|. None if it does not converge.
     pub(super) fn solve(&self, gap: f64) -> Option<Optimum> {
         let mut x = vec![0.0; self.gradient.len()];
-        let mut states: Vec<State> = self.rows.iter().map(State::first).collect();
+        let mut states: Vec<RowState> =
+            self.rows.iter().map(|row| RowState::first(row.price, -row.bound)).collect();
         for _ in 0..MAX_ITERATIONS {
             let residuals = self.residuals(&x, &states);
             if residuals.are_within(gap) {
                 return Some(Optimum { x, cost: residuals.cost });
             }
             let factor = self.factor(&states)?;
-            let products =
-                |(row, state): (&Row, &State)| (state.lambda * state.w, state.violation(row));
-            let mut reductions: Vec<(f64, f64)> = self.rows(&states).map(products).collect();
+            let mut reductions: Vec<Reduction> = states.iter().map(RowState::products).collect();
             let mut direction = self.direction(&factor, &states, &residuals, &reductions);
             if !self.rows.is_empty() {
-                reductions = self.corrected(&reductions, &states, &residuals, &direction);
+                reductions = corrected(&reductions, &states, &residuals, &direction);
                 direction = self.direction(&factor, &states, &residuals, &reductions);
             }
-            let step = (TO_BOUNDARY * self.reach(&states, &direction.states)).min(1.0);
+            let step = (TO_BOUNDARY * reach(&states, &direction.states)).min(1.0);
             for (x, d) in x.iter_mut().zip(&direction.x) {
                 *x += step * d;
             }
@@ -114,7 +98,7 @@ impl BandedProgram {
         None
     }
 
-    fn residuals(&self, x: &[f64], states: &[State]) -> Residuals {
+    fn residuals(&self, x: &[f64], states: &[RowState]) -> Residuals {
         let curved = self.matrix.times(x);
         let mut dual: Vec<f64> = curved.iter().zip(&self.gradient).map(|(h, g)| h + g).collect();
         for (row, state) in self.rows(states) {
@@ -122,20 +106,20 @@ impl BandedProgram {
                 dual[*i] += weight * state.lambda;
             }
         }
-        let primal = |(row, state): (&Row, &State)| row.value(x) - state.s + state.w - row.bound;
+        let primal = |(row, state): (&Row, &RowState)| row.value(x) - state.s + state.w - row.bound;
         Residuals {
             dual,
             primal: self.rows(states).map(primal).collect(),
-            complement: self.rows(states).map(|(row, state)| state.complement(row)).sum(),
+            complement: states.iter().map(RowState::complement).sum(),
             cost: self.cost(x, &curved, states),
         }
     }
 
     /// The factor of H with the rows eliminated. None if it is not positive definite.
-    fn factor(&self, states: &[State]) -> Option<Cholesky> {
+    fn factor(&self, states: &[RowState]) -> Option<Cholesky> {
         let mut matrix = self.matrix.clone();
         for (row, state) in self.rows(states) {
-            let weight = 1.0 / state.compliance(row);
+            let weight = 1.0 / state.compliance();
             for (n, (i, a)) in row.terms.iter().enumerate() {
                 for (j, b) in &row.terms[..=n] {
                     matrix.add(*i, *j, weight * a * b);
@@ -149,17 +133,14 @@ impl BandedProgram {
     fn direction(
         &self,
         factor: &Cholesky,
-        states: &[State],
+        states: &[RowState],
         residuals: &Residuals,
-        reductions: &[(f64, f64)],
+        reductions: &[Reduction],
     ) -> Direction {
-        let shifts: Vec<f64> = self
-            .rows(states)
+        let shifts: Vec<f64> = states
+            .iter()
             .zip(reductions.iter().zip(&residuals.primal))
-            .map(|((row, state), ((c_w, c_s), primal))| {
-                let soft = if row.is_soft() { c_s / state.mu(row) } else { 0.0 };
-                (primal + soft - c_w / state.lambda) / state.compliance(row)
-            })
+            .map(|(state, (reduction, primal))| state.shift(*primal, *reduction))
             .collect();
         let mut right: Vec<f64> = residuals.dual.iter().map(|r| -r).collect();
         for (row, shift) in self.rows.iter().zip(&shifts) {
@@ -171,65 +152,45 @@ impl BandedProgram {
         let states = self
             .rows(states)
             .zip(reductions.iter().zip(&shifts))
-            .map(|((row, state), ((c_w, c_s), shift))| {
-                let lambda = row.value(&x) / state.compliance(row) + shift;
-                let w = (-c_w - state.w * lambda) / state.lambda;
-                let soft = row.is_soft();
-                let s = if soft { (state.s * lambda - c_s) / state.mu(row) } else { 0.0 };
-                State { w, s, lambda }
+            .map(|((row, state), (reduction, shift))| {
+                state.change(row.value(&x) / state.compliance() + shift, *reduction)
             })
             .collect();
         Direction { x, states }
     }
 
-    /// The reductions with Mehrotra's correction: the second-order terms of the predictor and the
-    /// centring that follows from its step length.
-    fn corrected(
-        &self,
-        reductions: &[(f64, f64)],
-        states: &[State],
-        residuals: &Residuals,
-        predictor: &Direction,
-    ) -> Vec<(f64, f64)> {
-        let pairs: usize = self.rows.iter().map(|row| if row.is_soft() { 2 } else { 1 }).sum();
-        let reach = self.reach(states, &predictor.states);
-        let ahead = self.rows(states).zip(&predictor.states);
-        let ahead: f64 =
-            ahead.map(|((row, state), change)| state.moved(change, reach).complement(row)).sum();
-        let mean = residuals.complement / pairs as f64;
-        let centre = mean * (ahead / residuals.complement).powi(3);
-        reductions
-            .iter()
-            .zip(&predictor.states)
-            .map(|((c_w, c_s), d)| (c_w + d.w * d.lambda - centre, c_s - d.s * d.lambda - centre))
-            .collect()
-    }
-
-    fn cost(&self, x: &[f64], curved: &[f64], states: &[State]) -> f64 {
+    fn cost(&self, x: &[f64], curved: &[f64], states: &[RowState]) -> f64 {
         let smooth: f64 =
             x.iter().zip(curved).zip(&self.gradient).map(|((x, h), g)| x * (0.5 * h + g)).sum();
-        let soft = self.rows(states).filter(|(row, _)| row.is_soft());
-        smooth + soft.map(|(row, state)| row.price * state.s).sum::<f64>()
+        smooth + states.iter().map(RowState::cost).sum::<f64>()
     }
+}
 
-    /// The largest step, at most slightly over 1, that keeps all slacks and multipliers positive.
-    fn reach(&self, states: &[State], changes: &[State]) -> f64 {
-        let mut reach: f64 = 1.0 / TO_BOUNDARY;
-        for ((row, state), change) in self.rows(states).zip(changes) {
-            let mut bound = |value: f64, change: f64| {
-                if change < 0.0 {
-                    reach = reach.min(-value / change);
-                }
-            };
-            bound(state.w, change.w);
-            bound(state.lambda, change.lambda);
-            if row.is_soft() {
-                bound(state.s, change.s);
-                bound(state.mu(row), -change.lambda);
-            }
-        }
-        reach
-    }
+/// The reductions with Mehrotra's correction: the second-order terms of the predictor and the
+/// centring that follows from its step length.
+fn corrected(
+    reductions: &[Reduction],
+    states: &[RowState],
+    residuals: &Residuals,
+    predictor: &Direction,
+) -> Vec<Reduction> {
+    let pairs: usize = states.iter().map(|state| if state.is_soft() { 2 } else { 1 }).sum();
+    let reach = reach(states, &predictor.states);
+    let ahead = states.iter().zip(&predictor.states);
+    let ahead: f64 = ahead.map(|(state, change)| state.moved(change, reach).complement()).sum();
+    let mean = residuals.complement / pairs as f64;
+    let centre = mean * (ahead / residuals.complement).powi(3);
+    reductions
+        .iter()
+        .zip(&predictor.states)
+        .map(|(reduction, change)| change.corrected(*reduction, centre))
+        .collect()
+}
+
+/// The largest step, at most slightly over 1, that keeps all slacks and multipliers positive.
+fn reach(states: &[RowState], changes: &[RowChange]) -> f64 {
+    let pairs = states.iter().zip(changes);
+    pairs.fold(1.0 / TO_BOUNDARY, |reach, (state, change)| state.reach(change, reach))
 }
 
 impl Residuals {
@@ -239,42 +200,6 @@ impl Residuals {
         self.complement <= gap * size
             && self.primal.iter().all(|r| r.abs() <= RESIDUAL)
             && self.dual.iter().all(|r| r.abs() <= RESIDUAL * size)
-    }
-}
-
-impl State {
-    /// The state at x = 0.
-    fn first(row: &Row) -> State {
-        let s = if row.is_soft() { (-row.bound).max(0.0) + BEGIN } else { 0.0 };
-        let w = (row.bound + s).max(BEGIN);
-        State { w, s, lambda: (BEGIN / w).min(0.5 * row.price) }
-    }
-
-    /// The multiplier of s.
-    fn mu(&self, row: &Row) -> f64 {
-        row.price - self.lambda
-    }
-
-    fn violation(&self, row: &Row) -> f64 {
-        if row.is_soft() { self.mu(row) * self.s } else { 0.0 }
-    }
-
-    fn complement(&self, row: &Row) -> f64 {
-        self.lambda * self.w + self.violation(row)
-    }
-
-    /// Change of the value of a row per change of its multiplier.
-    fn compliance(&self, row: &Row) -> f64 {
-        let soft = if row.is_soft() { self.s / self.mu(row) } else { 0.0 };
-        soft + self.w / self.lambda
-    }
-
-    fn moved(&self, change: &State, step: f64) -> State {
-        State {
-            w: self.w + step * change.w,
-            s: self.s + step * change.s,
-            lambda: self.lambda + step * change.lambda,
-        }
     }
 }
 
@@ -340,7 +265,7 @@ mod tests {
             for (i, weight) in &row.terms {
                 affine.add(Some(*i), *weight);
             }
-            if row.is_soft() {
+            if row.price.is_finite() {
                 let slack = Some(size + k);
                 cones.minimize(&Affine::default().plus(slack, row.price));
                 cones.at_most_zero(Affine::default().plus(slack, -1.0));
@@ -361,7 +286,7 @@ mod tests {
             let other = by_cones(&program);
             let difference = (optimum.cost - other).abs();
             assert!(difference < AGREEMENT * (1.0 + other.abs()), "{seed}: {difference:e}");
-            for row in program.rows.iter().filter(|row| !row.is_soft()) {
+            for row in program.rows.iter().filter(|row| !row.price.is_finite()) {
                 assert!(row.value(&optimum.x) <= row.bound + 10.0 * RESIDUAL);
             }
         }

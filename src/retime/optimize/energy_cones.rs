@@ -23,6 +23,7 @@
 
 use super::cone::{Affine, ConeProgram, ConeSolution, ConeStatus};
 use super::energy_costs::{IntervalCost, Layout, Root, Scale, mean_root};
+use super::energy_interior::{EndRow, EnergyProgram};
 use super::path_energy::{EnergyModel, evaluate};
 use crate::retime::motion::timing::grid::PathGrid;
 use crate::retime::motion::timing::limits::{PathLimits, rows};
@@ -159,6 +160,65 @@ impl<'a> Programs<'a> {
         None
     }
 
+    /// Solves the program with the exact √b from the profile `start`, and adds rows until none is violated.
+    /// None if the method does not converge.
+    pub(super) fn interior(&mut self, start: &[f64]) -> Option<Step> {
+        let square = self.speed * self.speed;
+        let start: Vec<f64> = start.iter().map(|b| b / square).collect();
+        for _ in 0..MAX_ROUNDS {
+            let rows = self.end_rows();
+            let program = EnergyProgram { costs: &self.costs, rows, most: 1.0 - MARGIN };
+            let solution = program.solve(&start)?;
+            let b: Vec<f64> = solution.b.iter().map(|b| b * square).collect();
+            let tangent = Root::Tangent(&[]);
+            if !self.broken(&b, tangent) {
+                let energy = solution.cost * self.unit;
+                let marginal = solution.time * self.unit / self.duration;
+                return Some(Step { b, energy, bound: energy, excess: 0.0, marginal });
+            }
+            self.activate(&b, NEAR);
+        }
+        None
+    }
+
+    /// The active rows, and the lost braking works as soft rows.
+    fn end_rows(&self) -> Vec<EndRow> {
+        let n = self.grid.intervals();
+        let square = self.speed * self.speed;
+        let hard = f64::INFINITY;
+        let mut rows = Vec::new();
+        for (k, (max, active)) in self.b_max.iter().enumerate().take(n).skip(1) {
+            if *active {
+                let (linear, constant) = ([1.0 / max, 0.0], -(1.0 - MARGIN));
+                rows.push(EndRow { interval: k, linear, root: [0.0; 2], constant, price: hard });
+            }
+        }
+        for limit in self.limits[0].iter().filter(|limit| limit.active) {
+            let (k, Row { u, b, root, constant }) = (limit.interval, limit.row);
+            let per_u = limit.sign * u * square * 0.5 / self.grid.delta(k);
+            let shares = [1.0 - limit.at, limit.at];
+            let own = shares.map(|share| share * limit.sign * b * square);
+            rows.push(EndRow {
+                interval: k,
+                linear: [own[0] - per_u, own[1] + per_u],
+                root: shares.map(|share| share * limit.sign * root * self.speed),
+                constant: limit.sign * constant - (1.0 - MARGIN),
+                price: hard,
+            });
+        }
+        for (interval, cost) in self.costs.iter().enumerate() {
+            let shares = mean_root(interval, n).map(|(_, share)| share);
+            rows.extend(cost.brakes.iter().map(|([x, y, rest], factor)| EndRow {
+                interval,
+                linear: [-x, -y],
+                root: shares.map(|share| -factor * share),
+                constant: -rest,
+                price: 1.0,
+            }));
+        }
+        rows
+    }
+
     fn read(
         &self,
         layout: &Layout,
@@ -245,11 +305,12 @@ impl<'a> Programs<'a> {
             program.rotated_cone(&d, &speeds, vec![Affine::constant(1.0)]);
             time.add(Some(layout.d(k)), cost.time);
             program.minimize(&d.clone().times(cost.base));
-            program.minimize(&cost.cross);
+            program.minimize(&layout.affine(k, cost.cross));
             if let Some(e) = layout.copper(k) {
                 let e = Affine::default().plus(Some(e), 1.0);
                 program.minimize(&e);
-                program.rotated_cone(&e, &speeds, cost.copper.clone());
+                let copper = cost.copper.iter().map(|v| layout.affine(k, *v)).collect();
+                program.rotated_cone(&e, &speeds, copper);
             }
             if cost.viscous > 0.0 {
                 program.minimize(&self.viscous(layout, root, k));
@@ -266,7 +327,7 @@ impl<'a> Programs<'a> {
                 let lost = Some(layout.brake(k, i));
                 program.minimize(&Affine::default().plus(lost, 1.0));
                 program.at_most_zero(Affine::default().plus(lost, -1.0));
-                let mut row = work.clone().times(-1.0).plus(lost, -1.0);
+                let mut row = layout.affine(k, *work).times(-1.0).plus(lost, -1.0);
                 for (node, share) in mean_root(k, n) {
                     row.add(layout.c(node), -factor * share);
                 }
@@ -353,5 +414,84 @@ fn kind(root: Root<'_>) -> usize {
     match root {
         Root::Tangent(_) => 0,
         Root::Relaxed => 1,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a failed set-up is a failed test")]
+
+    use super::super::path_energy::Sharing;
+    use super::*;
+    use crate::retime::motion::stream::{DOF, Joints};
+    use crate::retime::motion::timing::grid::PathPoint;
+    use crate::retime::motion::timing::reachability::time_optimal;
+
+    const INTERVALS: usize = 120;
+    const TANGENTS: usize = 30;
+    /// Largest difference of the energies, relative.
+    const SAME: f64 = 2e-5;
+
+    fn joints(first: f64, second: f64) -> Joints {
+        let mut joints = [0.0; DOF];
+        (joints[0], joints[1]) = (first, second);
+        joints
+    }
+
+    /// Two coupled joints under gravity: q₁ = s, q₂ = 0.8 sin 2s.
+    fn grid() -> PathGrid {
+        let at = |k: usize| 1.8 * k as f64 / INTERVALS as f64;
+        let node = |s: f64| {
+            let (q1, q2) =
+                (joints(1.0, 1.6 * (2.0 * s).cos()), joints(0.0, -3.2 * (2.0 * s).sin()));
+            PathPoint {
+                m: joints(14.0 + 2.0 * q1[1], 2.0 + 3.0 * q1[1]),
+                c: joints(2.0 * q2[1], 3.0 * q2[1] + 1.5),
+                g: joints(70.0 * s.cos(), 12.0 * (3.0 * s).sin()),
+                coulomb: joints(9.0, 3.0 * q1[1].signum()),
+                viscous: joints(11.0, 4.0 * q1[1]),
+                ..PathPoint::kinematic(joints(s, 0.8 * (2.0 * s).sin()), q1, q2, 2.5)
+            }
+        };
+        let s: Vec<f64> = (0..=INTERVALS).map(at).collect();
+        let nodes: Vec<PathPoint> = s.iter().map(|s| node(*s)).collect();
+        PathGrid::from_nodes(s, &nodes).unwrap()
+    }
+
+    /// The energy by cone programs with tangents that converge, J.
+    fn by_cones(programs: &mut Programs<'_>, start: &Profile) -> f64 {
+        let mut tangent = start.b().to_vec();
+        let mut energy = f64::INFINITY;
+        for _ in 0..TANGENTS {
+            let step = programs.solve(Root::Tangent(&tangent)).unwrap();
+            energy = step.energy - step.excess;
+            tangent = step.b;
+        }
+        energy
+    }
+
+    #[test]
+    fn the_interior_point_method_agrees_with_cone_programs() {
+        let grid = grid();
+        let limits = PathLimits::new([9.0; DOF], joints(180.0, 60.0).map(|t| t.max(1.0))).unwrap();
+        let fastest = time_optimal(&grid, &limits).into_profile().unwrap();
+        let models = [
+            (Sharing::PerJoint, 0.0, 0.0, 1.0),
+            (Sharing::Bus, 0.3, 150.0, 1.0),
+            (Sharing::Bus, 1.0, 0.0, 0.0),
+        ];
+        for (sharing, regeneration, base_w, work) in models {
+            let loss = joints(2e-3, 1e-2);
+            let model = EnergyModel { work, speed: 0.0, loss, base_w, sharing, regeneration };
+            for factor in [1.001, 1.1, 1.6] {
+                let time = factor * fastest.duration();
+                let start = fastest.scaled_to(time).unwrap();
+                let new = || Programs::new(&grid, &limits, &model, &start, time);
+                let interior = new().interior(start.b()).unwrap();
+                let cones = by_cones(&mut new(), &start);
+                let ratio = interior.energy / cones;
+                assert!((ratio - 1.0).abs() < SAME, "{model:?} {factor}: {ratio}");
+            }
+        }
     }
 }

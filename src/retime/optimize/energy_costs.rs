@@ -19,16 +19,19 @@ pub(super) enum Root<'a> {
 /// ∫ √b ds over an interval that starts or ends at rest, per Δs √b at its moving end.
 const MEAN_ROOT_FROM_REST: f64 = 2.0 / 3.0;
 
+/// x b₀ + y b₁ + z at the scaled ends of an interval, as \[x, y, z\].
+pub(super) type OfEnds = [f64; 3];
+
 /// Costs of one interval in the units of the objective and of the scaled variables.
 pub(super) struct IntervalCost {
     /// Vector v with copper loss ‖v‖² / (c₀ + c₁).
-    pub(super) copper: Vec<Affine>,
+    pub(super) copper: Vec<OfEnds>,
     /// The part of the copper loss that is linear in (u, b).
-    pub(super) cross: Affine,
+    pub(super) cross: OfEnds,
     /// Factor w of the mean √b.
     pub(super) viscous: f64,
     /// Works of which the negative part is a cost, each with the factor of the mean √b.
-    pub(super) brakes: Vec<(Affine, f64)>,
+    pub(super) brakes: Vec<(OfEnds, f64)>,
     /// Time per d, relative to the given duration.
     pub(super) time: f64,
     /// Base energy per d.
@@ -54,16 +57,12 @@ impl IntervalCost {
         let middle = begin.toward(end, 0.5);
         let delta = grid.delta(k);
         let square = scale.speed * scale.speed;
-        let before = (k > 0).then(|| Layout::b_of(k));
-        let after = (k + 1 < grid.intervals()).then(|| Layout::b_of(k + 1));
         // ℓ, Nm, linear in b at both nodes: the two factors and the constant.
         let factors = |j: usize| {
             let (u, b) = (middle.m[j] * 0.5 / delta, 0.5 * middle.c[j]);
             [(b - u) * square, (b + u) * square, middle.g[j] + middle.coulomb[j]]
         };
-        let affine = |[x, y, rest]: [f64; 3]| Affine::constant(rest).plus(before, x).plus(after, y);
-        let linear = |j: usize| affine(factors(j));
-        let (mut cross, mut viscous) = (Affine::default(), 0.0);
+        let (mut cross, mut viscous) = (OfEnds::default(), 0.0);
         let mut losses = SMatrix::<f64, DOF, 3>::zeros();
         for j in 0..DOF {
             let friction = middle.viscous[j];
@@ -73,26 +72,26 @@ impl IntervalCost {
                 let per_unit = 2.0 * delta * model.loss[j] / (scale.unit * scale.speed);
                 losses.row_mut(j).copy_from_slice(&factors(j).map(|x| x * per_unit.sqrt()));
                 let factor = 2.0 * delta * model.loss[j] * friction / scale.unit;
-                cross = cross.sum(&linear(j).times(factor));
+                cross = sum(cross, factors(j).map(|x| x * factor));
             }
         }
         // The losses of all joints depend on two variables: QR reduces them to three terms.
         let copper = if losses.iter().any(|x| *x != 0.0) {
-            losses.qr().r().row_iter().map(|row| affine([row[0], row[1], row[2]])).collect()
+            losses.qr().r().row_iter().map(|row| [row[0], row[1], row[2]]).collect()
         } else {
             Vec::new()
         };
         let lost = (1.0 - model.regeneration) * delta / scale.unit;
         let joint_work = |j: usize| {
             let factor = middle.viscous[j] * middle.q1[j] * scale.speed;
-            (linear(j).times(lost * middle.q1[j]), lost * factor)
+            (factors(j).map(|x| x * lost * middle.q1[j]), lost * factor)
         };
-        let mut brakes: Vec<(Affine, f64)> = Vec::new();
+        let mut brakes: Vec<(OfEnds, f64)> = Vec::new();
         if lost > 0.0 {
             let moving = (0..DOF).filter(|j| middle.q1[*j] != 0.0).map(joint_work);
             match model.sharing {
                 Sharing::PerJoint => brakes.extend(moving),
-                Sharing::Bus => brakes.extend(moving.reduce(|x, y| (x.0.sum(&y.0), x.1 + y.1))),
+                Sharing::Bus => brakes.extend(moving.reduce(|x, y| (sum(x.0, y.0), x.1 + y.1))),
             }
         }
         let seconds = 2.0 * delta / scale.speed;
@@ -105,6 +104,10 @@ impl IntervalCost {
             base: model.base_w * seconds / scale.unit,
         }
     }
+}
+
+fn sum(x: OfEnds, y: OfEnds) -> OfEnds {
+    std::array::from_fn(|i| x[i] + y[i])
 }
 
 /// Weights of √b at the nodes of interval k in the mean of √b.
@@ -144,12 +147,13 @@ impl Layout {
     }
 
     /// b of an inner node.
-    fn b_of(node: usize) -> usize {
-        2 * (node - 1)
+    pub(super) fn b(&self, node: usize) -> Option<usize> {
+        (node > 0 && node < self.intervals).then(|| 2 * (node - 1))
     }
 
-    pub(super) fn b(&self, node: usize) -> Option<usize> {
-        (node > 0 && node < self.intervals).then(|| Layout::b_of(node))
+    /// A function of the ends of interval k.
+    pub(super) fn affine(&self, k: usize, [x, y, rest]: OfEnds) -> Affine {
+        Affine::constant(rest).plus(self.b(k), x).plus(self.b(k + 1), y)
     }
 
     pub(super) fn c(&self, node: usize) -> Option<usize> {

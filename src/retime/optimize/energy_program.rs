@@ -1,8 +1,9 @@
 //! The speed profile of least energy on a fixed path in a given time.
 //!
-//! A relaxation gives a lower bound and a first profile. Programs with tangents of the concave
-//! viscous terms then lower the energy in steps (difference of convex functions). A solution is
-//! accepted only after its profile has been checked and evaluated.
+//! An interior point method finds the profile. Where it does not converge, cone programs with tangents of
+//! the concave viscous terms lower the energy in steps (difference of convex functions), from a relaxation
+//! that also gives the lower bound. A solution is accepted only after its profile has been checked and
+//! evaluated.
 
 use super::energy_cones::{Programs, Step};
 use super::energy_costs::Root;
@@ -64,8 +65,8 @@ const CONVERGED: f64 = 1e-3;
 const MAX_TANGENTS: usize = 8;
 /// Largest time of the uniformly slowed start, relative to the fastest profile.
 const SLOWEST: f64 = 1e3;
-/// Steps of the search for the best time of the start.
-const PACE_STEPS: usize = 16;
+/// Relative tolerance of the best time of the start: it sets scales alone.
+const PACE_TOLERANCE: f64 = 0.02;
 /// Time relative to the fastest profile beyond which the speed range has little effect.
 const SLOW: f64 = 4.0;
 /// Bisection steps for the speed cap of a slow profile.
@@ -140,6 +141,12 @@ pub fn minimize_energy(
         return EnergyOutcome::Kept(search.best);
     }
     let mut programs = Programs::new(grid, limits, model, &search.best.profile, duration);
+    if let Some(step) = programs.interior(search.best.profile.b()) {
+        search.offer(&step);
+        if search.improved {
+            return EnergyOutcome::Converged(search.best);
+        }
+    }
     let mut tangent = relaxed.map_or_else(|| search.best.profile.b().to_vec(), |r| r.b.clone());
     let mut converged = false;
     for _ in 0..MAX_TANGENTS {
@@ -198,7 +205,7 @@ fn best_pace(grid: &PathGrid, model: &EnergyModel, fastest: &Profile, duration: 
     };
     let whole = (duration / fastest.duration()).min(SLOWEST).ln();
     let (mut lo, mut hi) = (0.0, whole);
-    for _ in 0..PACE_STEPS {
+    while hi - lo > PACE_TOLERANCE {
         let (a, b) = (lo + (hi - lo) / 3.0, hi - (hi - lo) / 3.0);
         if cost(a) > cost(b) {
             lo = a;
