@@ -43,6 +43,7 @@ use crate::arm::kinematics::limits_ok;
 use crate::arm::robot::Model;
 use crate::rapid::builtins::MoveForm;
 use crate::rapid::ir::movement::{Movement, Speed, Stop, Target, Wait, Zone};
+use crate::rapid::text::Span;
 use crate::retime::energy::power::holding_w;
 use crate::retime::motion::Step;
 use crate::retime::motion::timeline::{WaitBasis, WaitRecord, What};
