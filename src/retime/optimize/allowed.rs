@@ -38,6 +38,13 @@ impl Loads {
         }
     }
 
+    /// The largest loads of a run.
+    pub fn of(model: &Model, run: &Run) -> Loads {
+        let mut most = Loads::default();
+        most.raise(model, run);
+        most
+    }
+
     /// Loads that a stream may use. A known limit is used in full; an assumed limit is lowered to
     /// the largest load of the program, which the robot can execute.
     pub fn shown(model: &Model, simulation: &Simulation) -> Loads {

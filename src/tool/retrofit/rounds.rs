@@ -6,7 +6,7 @@ use super::error::RetrofitError;
 use super::figures::LowerLimits;
 use super::guard_cost::costly;
 use super::job::Job;
-use super::lower_limits;
+use super::lower_limits::{self, Gentler};
 use super::outputs::{Outputs, emitted};
 use super::planning::Planning;
 use super::relocated_waits::{RelocatedWait, repaired};
@@ -29,10 +29,10 @@ pub(super) fn verified(
     mut waits: Vec<RelocatedWait>,
 ) -> Result<Rewritten, RetrofitError> {
     let Job { original, model, settings, .. } = planning.job;
-    let mut torque_bound = TorqueBound::new(planning.job);
+    let mut bounds = (Gentler::default(), TorqueBound::new(planning.job));
     // With estimated torque limits, `TorqueBound` limits the torques to those of the original.
     let mut settings = settings.clone();
-    if let (Some(_), Some(loads)) = (&torque_bound, &mut settings.freedom.loads) {
+    if let (Some(_), Some(loads)) = (&bounds.1, &mut settings.freedom.loads) {
         loads.torque = Loads::limits(model).torque;
     }
     let mut rounds = 0;
@@ -42,9 +42,9 @@ pub(super) fn verified(
         let attempt = verify(original, &outputs.files, model, &settings, rewrite);
         let is_unchanged = waits.is_empty() && with_stream(&candidates).next().is_none();
         if attempt.verification.passed || is_unchanged {
-            let bound = torque_bound.as_mut();
+            let is_without_waits = waits.is_empty();
             let (lower_limits, changes) =
-                changes(planning, bound, (&outputs, &attempt), &candidates, waits.is_empty());
+                changes(planning, &mut bounds, (&outputs, &attempt), &candidates, is_without_waits);
             if changes.is_empty() {
                 return Ok(Rewritten {
                     candidates,
@@ -79,7 +79,7 @@ pub(super) fn verified(
 /// but do not pay or load a joint too much.
 fn changes(
     planning: &Planning<'_>,
-    torque_bound: Option<&mut TorqueBound<'_>>,
+    (gentler, torque_bound): &mut (Gentler, Option<TorqueBound<'_>>),
     (outputs, attempt): (&Outputs, &Attempt),
     candidates: &[Candidate],
     is_without_waits: bool,
@@ -89,7 +89,7 @@ fn changes(
     let lowered = lower_limits::emitted_under(&original.lowered, &outputs.files, settings);
     let mut changes = Vec::new();
     if is_without_waits {
-        changes = lower_limits::losing(original, &after.simulation, &lowered, candidates);
+        changes = gentler.replanned(planning, &after.simulation, &lowered, candidates);
     }
     // With another budget or objective, runs may deliberately take more energy.
     let must_save = settings.budget == Budget::AsBefore && settings.objective == Objective::Energy;
