@@ -200,8 +200,12 @@ fn replayed(
     while next < changed.len() {
         let mut window = window(simulation, changed[next], spans, change);
         next += 1;
-        while next < changed.len() && changed[next] <= *window.end() {
-            let further = self::window(simulation, changed[next], spans, change);
+        while let Some(event) = changed.get(next) {
+            let further = self::window(simulation, *event, spans, change);
+            // A wait behind a changed run needs that run.
+            if event > window.end() && *further.start() > changed[next - 1] {
+                break;
+            }
             window = *window.start()..=*further.end();
             next += 1;
         }

@@ -45,7 +45,7 @@ rule!("EW403", "detour", Path, Text, Info, "detour.rs");
 const MAX_POINTS: usize = 6;
 /// Slower movements are taken for a process, m/s: as in EW402.
 const MIN_SPEED: f64 = 0.5;
-/// Shorter ways may follow a contour, m: as in EW101.
+/// Shorter ways may follow a contour, as where an edge is deburred, m: as in EW101.
 const MIN_STEP: f64 = 0.15;
 
 fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
@@ -79,8 +79,17 @@ fn needless_loop(context: &Context<'_>, chain: &[usize], last: usize) -> Option<
     }
     // Without the chain, the last movement goes the way of the first one.
     let form = |site: usize| context.sites[site].signature.form;
-    let touches_work = |site: &usize| context.is_next_to_work(*site) || is_at_work(context, *site);
-    if form(chain[0]) != form(last) || chain.iter().any(touches_work) || is_at_work(context, last) {
+    let touches_work = |site: &usize| {
+        let is_short = context.corner(*site).is_none_or(|it| it.room() < MIN_STEP);
+        is_short || context.is_next_to_work(*site) || is_at_work(context, *site)
+    };
+    // The last movement of a program has no corner.
+    let is_short = context.corner(last).is_some_and(|it| it.room() < MIN_STEP);
+    if form(chain[0]) != form(last)
+        || chain.iter().any(touches_work)
+        || is_short
+        || is_at_work(context, last)
+    {
         return None;
     }
     let points = chain.len() - 1;
@@ -93,10 +102,8 @@ fn needless_loop(context: &Context<'_>, chain: &[usize], last: usize) -> Option<
     Some(finding)
 }
 
-/// Whether a movement of a loop may do the work itself: it is slow, a process runs, or it is so short
-/// that the loop goes round a part, as where an edge is deburred.
+/// Whether a movement of a loop may do the work itself: it is slow, or a process runs.
 fn is_at_work(context: &Context<'_>, site: usize) -> bool {
     let is_slow = context.sites[site].facts.speed.is_none_or(|it| it.tcp < MIN_SPEED);
-    let is_short = context.corner(site).is_none_or(|it| it.room() < MIN_STEP);
-    is_slow || is_short || context.is_in_process(site)
+    is_slow || context.is_in_process(site)
 }
