@@ -81,6 +81,13 @@ fn manual_change(fixture: &Fixture, finding: &Finding) -> Vec<Edit> {
         let length = length - shorter.parse::<f64>().unwrap();
         return vec![edit(span, format!("{there},tGripper;WaitTime {length};{back},tGripper;"))];
     }
+    if change.starts_with("waiting before ") {
+        let start = finding.related[0].0.start;
+        return vec![
+            edit(Span { start, end: start, ..span }, statement),
+            edit(span, String::new()),
+        ];
+    }
     let movements_before = |count: usize| {
         let text = String::from_utf8(file.bytes[..span.start as usize].to_vec()).unwrap();
         text.rmatch_indices("Move").nth(count - 1).unwrap().0 as u32

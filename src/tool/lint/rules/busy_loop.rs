@@ -34,8 +34,9 @@
 use super::super::context::Context;
 use super::super::flow::Class;
 use super::super::rule::Finding;
+use super::super::statements::called_instruction;
 use super::polling_wait::{PollingLoop, asks_outside, polling_loops};
-use crate::rapid::builtins::{self, Source};
+use crate::rapid::builtins::{self, Effect, Source};
 use crate::rapid::ir::hir::{Arg, Expr, ExprKind, Ident, Stmt, StmtKind};
 use crate::rapid::ir::program::RoutineId;
 
@@ -104,14 +105,24 @@ fn takes_no_time(
         // As where a time runs out.
         StmtKind::If { branches, otherwise } => {
             let takes_none = |stmt: &Stmt| {
-                matches!(stmt.kind, StmtKind::Return(_) | StmtKind::Raise(_) | StmtKind::Goto(_))
+                matches!(stmt.kind, StmtKind::Goto(_))
                     || takes_no_time(context, routine, stmt, ends_loop)
             };
-            branches.iter().all(|(it, body)| is_calculated(it) && body.iter().all(takes_none))
-                && otherwise.iter().flatten().all(takes_none)
+            let free = |body: &[Stmt]| leaves(body) || body.iter().all(takes_none);
+            branches.iter().all(|(it, body)| is_calculated(it) && free(body))
+                && otherwise.as_deref().is_none_or(free)
         }
         _ => false,
     }
+}
+
+/// Whether statements end the loop or stop the program: what they do before is no part of the loop.
+fn leaves(body: &[Stmt]) -> bool {
+    body.last().is_some_and(|last| match &last.kind {
+        StmtKind::Return(_) | StmtKind::Raise(_) | StmtKind::Exit => true,
+        _ => called_instruction(last)
+            .is_some_and(|it| matches!(it.effect, Effect::Stop | Effect::ExitCycle)),
+    })
 }
 
 /// Whether a value comes from data, clocks and calculations alone.

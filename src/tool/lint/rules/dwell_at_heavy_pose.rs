@@ -128,7 +128,7 @@ fn where_it_was(
         "the robot waits {:.1} s in a pose that takes {:.0} W to hold; the one before takes less",
         dwell.duration_s, dwell.power_w
     );
-    let change = format!("the wait before {} in place of behind it", context.sites[site].name);
+    let change = format!("waiting before {}, not behind it", context.sites[site].name);
     let finding = Finding::new(&RULE, wait.span, message)
         .with_saving(change, saving)
         .with_related(movement.span, "it leaves the better pose here")
