@@ -8,6 +8,7 @@ use std::io::{BufRead, BufReader, Read, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
+use joulepath::rapid::text::decode;
 use serde_json::{Value, json};
 
 struct Client {
@@ -19,6 +20,10 @@ struct Client {
 
 impl Client {
     fn start(options: &Value) -> Client {
+        Client::start_with(&json!({}), options)
+    }
+
+    fn start_with(capabilities: &Value, options: &Value) -> Client {
         let mut process = Command::new(env!("CARGO_BIN_EXE_joulepath"))
             .arg("lsp")
             .stdin(Stdio::piped())
@@ -30,7 +35,7 @@ impl Client {
         let mut client = Client { process, input, output, next: 1 };
         let about = client.request(
             "initialize",
-            &json!({ "capabilities": {}, "initializationOptions": options }),
+            &json!({ "capabilities": capabilities, "initializationOptions": options }),
         );
         assert_eq!(about["capabilities"]["hoverProvider"], true);
         assert_eq!(about["capabilities"]["textDocumentSync"]["change"], 2);
@@ -171,8 +176,79 @@ fn an_open_document_gets_findings_hovers_and_fixes() {
     client.stop();
 }
 
-/// With an unknown robot and a missing folder the document is linted alone, without joules; a
-/// malformed request receives an error.
+/// The run at the cursor becomes a stream, of files as on disk, with a preview; a run that stays has a
+/// reason.
+#[test]
+fn one_run_is_optimised_as_an_action() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("encoding.mod");
+    let bytes = fs::read("fixtures/hard/encoding.mod").unwrap();
+    fs::write(&path, &bytes).unwrap();
+    let text = decode(&bytes).text;
+    let uri = format!("file://{}", path.display());
+    let document = json!({ "uri": uri });
+    let capabilities = json!({
+        "textDocument": { "codeAction": {
+            "dataSupport": true, "resolveSupport": { "properties": ["edit"] }
+        } },
+        "workspace": { "workspaceEdit": {
+            "documentChanges": true, "resourceOperations": ["create"],
+            "changeAnnotationSupport": {}
+        } }
+    });
+    let mut client = Client::start_with(&capabilities, &json!({ "robot": "IRB1600-10/1.45" }));
+    client.open_text(&uri, &text);
+    client.next_findings();
+    let lines: Vec<&str> = text.lines().collect();
+    let line_of =
+        |start: &str| lines.iter().position(|line| line.trim().starts_with(start)).unwrap();
+    let action = |client: &mut Client, line: usize| {
+        let place = json!({ "line": line, "character": 8 });
+        let range = json!({ "start": place, "end": place });
+        let asked =
+            json!({ "textDocument": document, "range": range, "context": { "diagnostics": [] } });
+        let actions = client.request("textDocument/codeAction", &asked);
+        let mut actions = actions.as_array().unwrap().iter();
+        actions.find(|it| it["kind"] == "refactor.rewrite").unwrap().clone()
+    };
+
+    let chosen = action(&mut client, line_of("MoveL pPrüfen,"));
+    assert!(chosen.get("edit").is_none(), "{chosen}");
+    let edit = client.request("codeAction/resolve", &chosen)["edit"].clone();
+    assert_eq!(edit["changeAnnotations"]["run"]["needsConfirmation"], true, "{edit}");
+    let changes = edit["documentChanges"].as_array().unwrap();
+    let kinds: Vec<Option<&str>> = changes.iter().map(|it| it["kind"].as_str()).collect();
+    assert_eq!(kinds, [Some("create"), None, None], "{edit}");
+    assert!(changes[0]["uri"].as_str().unwrap().ends_with("/Joulepath.mod"), "{edit}");
+    let module = changes[1]["edits"][0]["newText"].as_str().unwrap();
+    assert!(module.contains("jpRun1") && !module.contains("jpRun2"), "{module}");
+    let program = &changes[2]["edits"][0];
+    assert_eq!(program["annotationId"], "run");
+    // Only the lines of the run change, and they stay behind the guard.
+    let [first, last] = ["start", "end"].map(|end| program["range"][end]["line"].as_u64().unwrap());
+    let mut changed = program["newText"].as_str().unwrap().to_owned();
+    assert!(last as usize <= line_of("WaitTime 0.3"), "{program}");
+    assert!(changed.contains("IF jpFits1(") && changed.contains("jpRun1 "), "{changed}");
+    for line in &lines[first as usize..last as usize] {
+        let at = changed.find(line.trim()).unwrap();
+        changed.replace_range(at..at + line.trim().len(), "");
+    }
+    assert_eq!(fs::read(&path).unwrap(), bytes);
+
+    // The first movement stays, and says why.
+    let chosen = action(&mut client, line_of("MoveAbsJ jHome"));
+    let error = client.request_error("codeAction/resolve", &chosen);
+    assert!(error["message"].as_str().unwrap().contains("first-movement"), "{error}");
+
+    // What is not saved is not on disk.
+    let chosen = action(&mut client, line_of("MoveL pPrüfen,"));
+    let start = json!({ "line": 0, "character": 0 });
+    client.change(&uri, &json!({ "range": { "start": start, "end": start }, "text": "! new\n" }));
+    let error = client.request_error("codeAction/resolve", &chosen);
+    assert!(error["message"].as_str().unwrap().contains("save "), "{error}");
+    client.stop();
+}
+
 #[test]
 fn options_of_a_wrong_form_are_reported() {
     let mut client = Client::start(&json!({ "inputs": "diPart=2.5" }));
@@ -182,6 +258,8 @@ fn options_of_a_wrong_form_are_reported() {
     assert!(text.contains("initializationOptions") && text.contains("inputs"), "{text}");
 }
 
+/// With an unknown robot and a missing folder the document is linted alone, without joules; a
+/// malformed request receives an error.
 #[test]
 fn a_document_is_linted_without_a_robot_and_a_folder() {
     let mut client = Client::start(&json!({ "robot": "no such robot" }));

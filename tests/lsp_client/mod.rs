@@ -18,7 +18,9 @@ use joulepath::rapid::check::Extent;
 use joulepath::rapid::format::Style;
 use joulepath::rapid::text::{FileId, SourceFile};
 use joulepath::tool::lint::Programs;
-use joulepath::tool::lsp::{Host, LspError, Options, ProjectFiles, TaskFiles, serve_on};
+use joulepath::tool::lsp::{
+    ChangedFile, Host, LspError, Options, ProjectFiles, TaskFiles, serve_on,
+};
 use lsp_server::{Connection, Message, Notification, Request, ResponseError};
 use marks::unmarked;
 use serde_json::{Value, json};
@@ -73,6 +75,10 @@ impl Host for Memory {
 
     fn style(&self, _: &Path) -> Result<Style, String> {
         Ok(self.style.unwrap_or_default())
+    }
+
+    fn with_stream(&self, _: &Options, _: &Path, _: u32) -> Result<Vec<ChangedFile>, String> {
+        Err("these files are in memory".to_owned())
     }
 
     fn until_pause(&self, connection: &Connection) -> Result<Option<Message>, LspError> {

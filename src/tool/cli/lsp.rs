@@ -1,5 +1,7 @@
 //! `joulepath lsp`: the language server.
 
+mod one_run;
+
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
@@ -15,7 +17,7 @@ use crate::rapid::format::Style;
 use crate::rapid::syntax::{self, Parse};
 use crate::tool::lint::Programs;
 use crate::tool::lsp::{
-    self, Connection, Host, LspError, Message, Options, ProjectFiles, TaskFiles,
+    self, ChangedFile, Connection, Host, LspError, Message, Options, ProjectFiles, TaskFiles,
 };
 
 /// The procedure that starts a program, where nothing names another one.
@@ -82,15 +84,7 @@ impl Host for Disk {
     /// None if the folder cannot be read or the robot is unknown, so that only open documents are
     /// linted.
     fn programs(&self, options: &Options, folder: &Path) -> Programs {
-        let cell = CellArgs {
-            paths: existing(folder),
-            robot: options.robot.clone(),
-            entry: options.entry.clone(),
-            inputs: options.inputs.clone(),
-            quiet: true,
-            ..CellArgs::default()
-        };
-        let args = LintArgs { cell, ..LintArgs::default() };
+        let args = LintArgs { cell: cell(options, folder), ..LintArgs::default() };
         Setup::new(&args).map(|setup| setup.programs).unwrap_or_default()
     }
 
@@ -100,12 +94,34 @@ impl Host for Disk {
         Ok(config.format.style())
     }
 
+    fn with_stream(
+        &self,
+        options: &Options,
+        file: &Path,
+        line: u32,
+    ) -> Result<Vec<ChangedFile>, String> {
+        let folder = file.parent().map_or_else(PathBuf::new, Path::to_path_buf);
+        one_run::with_stream(cell(options, &folder), file, line).map_err(|it| format!("{it:#}"))
+    }
+
     fn until_pause(&self, connection: &Connection) -> Result<Option<Message>, LspError> {
         match connection.receiver.recv_timeout(PAUSE) {
             Ok(message) => Ok(Some(message)),
             Err(error) if error.is_timeout() => Ok(None),
             Err(_) => Err(LspError::Closed),
         }
+    }
+}
+
+/// The programs of a folder, with the options of the editor.
+fn cell(options: &Options, folder: &Path) -> CellArgs {
+    CellArgs {
+        paths: existing(folder),
+        robot: options.robot.clone(),
+        entry: options.entry.clone(),
+        inputs: options.inputs.clone(),
+        quiet: true,
+        ..CellArgs::default()
     }
 }
 

@@ -29,14 +29,14 @@ use crate::tool::retrofit::{
 use crate::tool::suggest::Applied;
 
 /// Retrofit a program: the same work with less energy in no more time.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 #[command(
     after_help = "Example: joulepath optimize fixtures/pick_place --robot IRB1600-10/1.45 --out optimized"
 )]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag of the command line")]
 pub(super) struct OptimizeArgs {
     #[command(flatten)]
-    program: ProgramArgs,
+    pub(super) program: ProgramArgs,
 
     /// Write the complete program into this folder.
     #[arg(long, value_name = "DIR")]
@@ -164,18 +164,20 @@ pub(super) struct OptimizeArgs {
 }
 
 /// What is minimised.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 enum ObjectiveArg {
     /// Energy in the time that there is.
+    #[default]
     Energy,
     /// Time.
     Time,
 }
 
 /// What is written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 enum EmitArg {
     /// Streams of joint targets in place of movements.
+    #[default]
     Absj,
     /// The movements with other speeds; lines and arcs not faster than programmed.
     Retime,
@@ -184,20 +186,22 @@ enum EmitArg {
 }
 
 /// How the points of streams are written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 enum LayoutArg {
     /// An instruction for each point.
     Plain,
     /// Constant arrays and a loop.
     Array,
     /// Arrays for long streams.
+    #[default]
     Auto,
 }
 
 /// The cost function.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 enum EnergyArg {
     /// What the robot takes from the grid.
+    #[default]
     Electrical,
     /// The same with all braking energy lost.
     ElectricalNoRegeneration,
@@ -362,7 +366,8 @@ fn optimize_job(
     Ok(ExitCode::from(u8::from(refused)))
 }
 
-fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
+/// The settings of the retrofit.
+pub(super) fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
     let positive = |value: f64, flag: &str| {
         if value.is_finite() && value > 0.0 {
             Ok(value)
@@ -405,6 +410,7 @@ fn settings(args: &OptimizeArgs, job: &Job) -> anyhow::Result<Settings> {
             freed: job.files.iter().flat_map(|source| freed(&source.file)).collect(),
             keep_out: keep_outs(&job.config)?,
         },
+        only: None,
         inline_targets: args.inline_targets,
         form: match args.emit {
             EmitArg::Absj => Form::Streams,

@@ -126,7 +126,7 @@ pub(super) fn write_folder(
 }
 
 /// New files before the files that call them: an interrupted write leaves a working program.
-fn new_first(outputs: &[OutputFile]) -> impl Iterator<Item = &OutputFile> {
+pub(super) fn new_first(outputs: &[OutputFile]) -> impl Iterator<Item = &OutputFile> {
     let of = |new: bool| outputs.iter().filter(move |file| (file.kind == OutputKind::New) == new);
     of(true).chain(of(false))
 }
@@ -196,7 +196,7 @@ fn current_bytes(job: &Job, file: &OutputFile) -> Option<Vec<u8>> {
 }
 
 /// Path and bytes of the input file of an output.
-fn input_file<'a>(job: &'a Job, file: &OutputFile) -> Option<(&'a str, &'a [u8])> {
+pub(super) fn input_file<'a>(job: &'a Job, file: &OutputFile) -> Option<(&'a str, &'a [u8])> {
     match (file.kind, file.input) {
         (OutputKind::New, _) => None,
         (_, Some(i)) => job.files.get(i).map(|s| (s.file.path.as_str(), s.file.bytes.as_slice())),
@@ -210,7 +210,7 @@ fn input_file<'a>(job: &'a Job, file: &OutputFile) -> Option<(&'a str, &'a [u8])
 }
 
 /// The path of an output in the user's own tree.
-fn path_in_tree(job: &Job, file: &OutputFile) -> PathBuf {
+pub(super) fn path_in_tree(job: &Job, file: &OutputFile) -> PathBuf {
     if let Some((path, _)) = input_file(job, file) {
         return PathBuf::from(path);
     }

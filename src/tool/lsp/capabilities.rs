@@ -29,7 +29,11 @@ pub(super) fn initialize_result(client: &Client) -> InitializeResult {
             hover_provider: Some(true.into()),
             code_action_provider: Some(
                 CodeActionOptions {
-                    code_action_kinds: Some(vec![CodeActionKind::QuickFix]),
+                    code_action_kinds: Some(vec![
+                        CodeActionKind::QuickFix,
+                        CodeActionKind::RefactorRewrite,
+                    ]),
+                    resolve_provider: Some(true),
                     ..CodeActionOptions::default()
                 }
                 .into(),

@@ -1,6 +1,6 @@
 //! What the server needs from outside.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use lsp_server::{Connection, Message};
 
@@ -25,11 +25,33 @@ pub trait Host {
     /// Its configuration is wrong.
     fn style(&self, file: &Path) -> Result<Style, String>;
 
+    /// The files that change if the run with a movement in a line (from 1) of a file becomes a stream.
+    ///
+    /// # Errors
+    /// Why it stays as it is.
+    fn with_stream(
+        &self,
+        options: &Options,
+        file: &Path,
+        line: u32,
+    ) -> Result<Vec<ChangedFile>, String>;
+
     /// The next message, or `None` once the user pauses: then diagnostics are made.
     ///
     /// # Errors
     /// The client has closed the connection.
     fn until_pause(&self, connection: &Connection) -> Result<Option<Message>, LspError>;
+}
+
+/// A file of the user that changes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ChangedFile {
+    /// Where it is.
+    pub path: PathBuf,
+    /// Its text on disk; `None` for a new one.
+    pub before: Option<String>,
+    /// Its new text.
+    pub after: String,
 }
 
 /// The modules of a folder.

@@ -28,6 +28,7 @@ mod hover;
 mod lens;
 mod links;
 mod module;
+mod one_run;
 mod options;
 mod outline;
 mod position;
@@ -47,7 +48,7 @@ mod workspace;
 mod writes;
 
 pub use error::LspError;
-pub use host::{Host, ProjectFiles, TaskFiles};
+pub use host::{ChangedFile, Host, ProjectFiles, TaskFiles};
 pub use lsp_server::{Connection, Message};
 pub use options::Options;
 

@@ -1,14 +1,15 @@
 //! Answers to requests.
 
 use gen_lsp_types::{
-    CodeActionParams, InlayHintParams, LspRequestMethod, Position, Range, TextDocumentIdentifier,
-    Uri,
+    CodeAction, CodeActionParams, InlayHintParams, LspRequestMethod, Position, Range,
+    TextDocumentIdentifier, Uri,
 };
 use lsp_server::{ErrorCode, Request, Response};
 use serde_json::{Value, from_value, json};
 
 use super::actions::code_actions;
 use super::calls;
+use super::client::LateEdits;
 use super::completion;
 use super::costs::of_statement;
 use super::definition::{self, Declarations};
@@ -19,6 +20,7 @@ use super::host::Host;
 use super::hover::hover;
 use super::lens::{code_lenses, inlay_hints};
 use super::links::document_links;
+use super::one_run;
 use super::rename::{self, Refusal};
 use super::semantic_tokens::semantic_tokens;
 use super::server::Server;
@@ -93,6 +95,7 @@ fn result<H: Host>(server: &mut Server<H>, method: &str, params: Value) -> Resul
     match LspRequestMethod::from(method) {
         LspRequestMethod::TextDocumentHover => hovered(server, params),
         LspRequestMethod::TextDocumentCodeAction => actions(server, params),
+        LspRequestMethod::CodeActionResolve => resolve(server, params),
         LspRequestMethod::TextDocumentDefinition => {
             at(server, params, |view, byte| json!(definition::definition(view, byte)))
         }
@@ -236,9 +239,23 @@ fn actions<H: Host>(server: &mut Server<H>, params: Value) -> Result<Value, Fail
     server.lint(&text_document.uri.0);
     let analysis = server.findings.get(&text_document.uri.0);
     let units = server.client.units;
-    let actions =
-        analysis.map(|analysis| code_actions(analysis, units, &text_document.uri, &range));
-    Ok(json!(actions.unwrap_or_default()))
+    let actions = |analysis| {
+        let mut all = code_actions(analysis, units, &text_document.uri, &range);
+        if server.client.late_edits != LateEdits::Unknown {
+            all.extend(one_run::offer(analysis, units, &text_document.uri, &range));
+        }
+        all
+    };
+    Ok(json!(analysis.map(actions).unwrap_or_default()))
+}
+
+fn resolve<H: Host>(server: &mut Server<H>, params: Value) -> Result<Value, Failure> {
+    let mut action: CodeAction = from_value(params)?;
+    let run = from_value(action.data.clone().unwrap_or_default())?;
+    let Server { host, options, workspace, client, .. } = server;
+    let edit = one_run::edit(host, options, &workspace.documents, client, &run);
+    action.edit = Some(edit.map_err(Failure::Refused)?);
+    Ok(json!(action))
 }
 
 fn prepare_rename<H: Host>(server: &mut Server<H>, params: Value) -> Result<Value, Failure> {

@@ -27,6 +27,7 @@ use super::spacing_table::spacing_table;
 use super::speeds;
 use super::torque_demand::mean_robot;
 use crate::arm::robot::{Model, Use, ready};
+use crate::rapid::text::Span;
 use crate::retime::energy::plausible::Robots;
 use crate::retime::optimize::energy_curve::{TimeEnergy, pareto};
 use crate::retime::optimize::idle::dwells;
@@ -61,7 +62,11 @@ fn once(
     let (program, entry) = read_program(files, &settings.entry)?;
     let cycle = Simulated::new(&program, entry, model, &settings.options);
     let guards = Guards::new(&program, files, settings);
-    let sites = marked_sites(&program, entry, &cycle.simulation, &guards, settings.form);
+    let mut sites = marked_sites(&program, entry, &cycle.simulation, &guards, settings.form);
+    sites.retain(|site| {
+        let is_own = |part: Span| site.pieces.iter().any(|piece| piece.span().touches(part));
+        settings.only.is_none_or(is_own)
+    });
     let lowered = lowered(&program, entry, model, settings);
     let robots = if settings.point_estimate { None } else { Robots::new(model) };
     let job = Job {

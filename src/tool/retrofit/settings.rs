@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::arm::robot::Model;
+use crate::rapid::text::Span;
 use crate::retime::motion::{Options, Simulation};
 use crate::retime::optimize::allowed::Loads;
 use crate::retime::optimize::cost::Cost;
@@ -63,6 +64,8 @@ pub struct Settings {
     pub closest_s: f64,
     /// Which constraints of the movements a stream may leave.
     pub freedom: Freedom,
+    /// The part of the text whose runs may become streams; `None`: all of it.
+    pub only: Option<Span>,
     /// The form of the output.
     pub form: Form,
     /// Layout of the points of streams.
@@ -104,6 +107,7 @@ impl Default for Settings {
             spacing_s: SPACING_S,
             closest_s: CLOSEST_S,
             freedom: Freedom::default(),
+            only: None,
             form: Form::default(),
             layout: Layout::default(),
             cost: Cost::default(),
