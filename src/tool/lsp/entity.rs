@@ -118,7 +118,7 @@ fn pairs(project: &Project, key: &str) -> Vec<Pair> {
     let mut pairs = Vec::new();
     for task in &project.tasks {
         let with: Vec<usize> = (task.files.files.iter().copied())
-            .filter(|index| project.modules[*index].has_word(key))
+            .filter(|index| project.modules[*index].mentions(key))
             .collect();
         if with.is_empty() {
             continue;

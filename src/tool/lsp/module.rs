@@ -1,22 +1,22 @@
 //! A file of a project with what is derived from its bytes alone.
 
 use std::cell::OnceCell;
-use std::collections::HashSet;
+
+use memchr::memchr2_iter;
 
 use crate::rapid::names::SourceText;
-use crate::rapid::syntax::{self, Parse, TokenKind};
+use crate::rapid::syntax::{self, Parse};
 use crate::rapid::text::SourceFile;
 
-/// A file. Its tree and its words are made when they are first needed.
+/// A file. Its tree is made when it is first needed.
 pub(super) struct Module {
     pub(super) file: SourceFile,
     parse: OnceCell<Parse>,
-    words: OnceCell<HashSet<String>>,
 }
 
 impl Module {
     pub(super) fn new(file: SourceFile) -> Module {
-        Module { file, parse: OnceCell::new(), words: OnceCell::new() }
+        Module { file, parse: OnceCell::new() }
     }
 
     pub(super) fn parse(&self) -> &Parse {
@@ -27,19 +27,13 @@ impl Module {
         SourceText { file: &self.file, parse: self.parse() }
     }
 
-    /// Whether it has an identifier of this name, in lower case.
-    pub(super) fn has_word(&self, name: &str) -> bool {
-        let words = || {
-            let tokens = self.parse().tree.tokens();
-            let words =
-                (0..tokens.count()).filter(|one| tokens.kind(*one) == TokenKind::Identifier);
-            let text = |word| {
-                let range = tokens.range(word);
-                let bytes = self.file.bytes.get(range.start as usize..range.end as usize);
-                self.file.charset.decode(bytes.unwrap_or_default()).to_lowercase()
-            };
-            words.map(text).collect()
-        };
-        self.words.get_or_init(words).contains(name)
+    /// Whether a name (in lower case) stands in its text: alone, in another word, or in a comment.
+    pub(super) fn mentions(&self, name: &str) -> bool {
+        let (Some(first), true) = (name.bytes().next(), name.is_ascii()) else { return true };
+        let bytes = &self.file.bytes;
+        memchr2_iter(first, first.to_ascii_uppercase(), bytes).any(|at| {
+            let word = bytes.get(at..at + name.len());
+            word.is_some_and(|word| word.eq_ignore_ascii_case(name.as_bytes()))
+        })
     }
 }

@@ -11,7 +11,7 @@ use crate::tool::lsp::workspace::View;
 pub(super) fn check(view: View<'_>, entity: &Entity, new: &str, key: &str) -> Result<(), Refusal> {
     let modules = &view.project.modules;
     let has =
-        |task: &&Task, key: &str| task.files.files.iter().any(|file| modules[*file].has_word(key));
+        |task: &&Task, key: &str| task.files.files.iter().any(|file| modules[*file].mentions(key));
     let concerned = |task: &Task| {
         let files = &task.files.files;
         entity.declarations.iter().any(|span| files.contains(&(span.file.0 as usize)))
@@ -49,7 +49,7 @@ fn shared(view: View<'_>, entity: &Entity, new: &str, key: &str) -> Result<(), R
     for task in &view.project.tasks {
         let files = &task.files.files;
         if !controllers.contains(&task.files.controller)
-            || !files.iter().any(|file| modules[*file].has_word(key))
+            || !files.iter().any(|file| modules[*file].mentions(key))
         {
             continue;
         }

@@ -34,7 +34,7 @@ fn is_call(role: Role) -> bool {
 /// A call of the renamed routine at a place where data have the new name.
 fn calls_behind_data(view: View<'_>, entity: &Entity, key: &str) -> Option<Span> {
     let calls = entity.uses.iter().filter(|(_, role)| is_call(**role)).map(|(span, _)| *span);
-    let mut calls = calls.filter(|span| view.project.module(span.file).has_word(key));
+    let mut calls = calls.filter(|span| view.project.module(span.file).mentions(key));
     calls.find(|span| {
         view.project.names_of(span.file).any(|names| has_data(names, span.file, span.start, key))
     })
@@ -59,7 +59,7 @@ fn has_data(names: &Names, file: FileId, byte: u32, key: &str) -> bool {
 fn called_inside(view: View<'_>, entity: &Entity, key: &str) -> Option<Span> {
     for declared in &entity.declarations {
         let file = declared.file;
-        if !view.project.module(file).has_word(key) {
+        if !view.project.module(file).mentions(key) {
             continue;
         }
         for names in view.project.names_of(file) {

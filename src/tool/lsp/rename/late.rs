@@ -115,7 +115,7 @@ pub(super) fn doubtful(
                 return refuse(span, "a string that is put together names the procedure");
             }
         }
-        if kind != Kind::Component || !module.has_word(&key) {
+        if kind != Kind::Component || !module.mentions(&key) {
             continue;
         }
         let file = module.file.id;
