@@ -3,7 +3,8 @@
 //! ## What it does
 //! Finds runs of movements that end at a stop behind which the program waits for an input that
 //! comes later. Where it is not known when the input comes, only movements at `vmax` and the like
-//! (5 m/s and more) right before such a wait are told.
+//! (5 m/s and more) right before such a wait are told. What does more than move (`MoveLDO`), and what comes
+//! before it in the run, keeps its speed.
 //!
 //! ## Why it wastes energy
 //! Acceleration, friction and copper losses grow with speed, and the time won is spent waiting
@@ -104,9 +105,11 @@ pub(super) fn slower_run(
     slack: f64,
 ) -> Option<Finding> {
     let run = run_of(context, index)?;
+    // What does more than move keeps its time, and so does what comes before it.
+    let last = run.iter().rposition(|site| !context.sites[*site].is_plain());
+    let run = &run[last.map_or(0, |last| last + 1)..];
     let sites: Vec<_> = run.iter().map(|site| &context.sites[*site]).collect();
-    if sites.iter().any(|site| !site.is_plain()) || run.iter().any(|it| context.is_in_process(*it))
-    {
+    if run.is_empty() || run.iter().any(|it| context.is_in_process(*it)) {
         return None;
     }
     let spans: Vec<Span> = sites.iter().map(|site| site.stmt.span).collect();
