@@ -69,5 +69,9 @@ fn check(context: &Context<'_>, findings: &mut Vec<Finding>) {
         first.name
     );
     let span = first.tool.map_or(first.stmt.span, |tool| tool.span);
-    findings.push(Finding::new(&RULE, span, message).for_places(bare.len()));
+    let finding = Finding::new(&RULE, span, message).for_places(bare.len());
+    let others = bare.iter().skip(1);
+    findings.push(others.fold(finding, |finding, site| {
+        finding.with_related(site.tool.map_or(site.stmt.span, |tool| tool.span), "and here")
+    }));
 }
